@@ -1,0 +1,58 @@
+#pragma once
+/// A picture in memory and the one pair of functions that reads and writes the file formats.
+
+#include "../error.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace clrender {
+
+/// Pixels of the files with 8 bits a channel stay 8 bits (four times less memory for textures).
+enum class PixelType { u8, f32 };
+
+/// `width * height * channels` values, row-major, the top row first, channels interleaved.
+/// `channels` is 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGB, alpha). Exactly one of `u8` and
+/// `f32` holds data, as `type` says. u8 data are as stored in the file (sRGB-encoded unless the
+/// user declares them raw); f32 data are linear.
+struct Image {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    PixelType type = PixelType::f32;
+    std::vector<std::uint8_t> u8;
+    std::vector<float> f32;
+};
+
+/// Reads .png .jpg .jpeg .tga .bmp .hdr .exr .pfm (by content where the format has a signature,
+/// else by extension). 16-bit PNGs become f32 (decoded from sRGB). EXR: channels R,G,B[,A] or Y.
+/// The header is checked against the length of the file before anything is allocated; at most
+/// 2^28 pixels. Throws InputError with `referrer`'s place in front of what is wrong with the file
+/// if `referrer` has a file name, else with the image's own name.
+Image read_image(const std::string &path, const SourceLocation &referrer = {});
+
+/// One named 32-bit float plane set of an EXR file: `name` is "" for the main layer (channels
+/// R G B [A] or Y [A]), else the layer prefix ("variance" gives variance.R ...).
+struct ImageLayer {
+    std::string name;
+    const Image *image = nullptr; ///< f32, all layers of the same size
+};
+
+/// Writes `image` (linear f32) by the extension of `path`: .png .jpg (sRGB, clamped, multiplied by
+/// 2^exposure), .hdr .pfm (RGB) .exr (32-bit float, all channels, `metadata` as string attributes,
+/// `extra_layers` as further channels). Written to a temporary file beside `path`, then renamed: a
+/// failure leaves an older file as it was. Throws InputError naming `path`.
+void write_image(const std::string &path, const Image &image, double exposure = 0,
+                 const std::map<std::string, std::string> &metadata = {},
+                 const std::vector<ImageLayer> &extra_layers = {});
+
+/// True if `write_image` knows the extension of `path`.
+bool is_writable_image_path(const std::string &path);
+
+/// The IEC 61966-2-1 transfer function and its inverse, on [0, 1].
+double srgb_encode(double linear);
+double srgb_decode(double encoded);
+
+} // namespace clrender

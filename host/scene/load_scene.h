@@ -1,0 +1,20 @@
+#pragma once
+/// The one entry to all readers.
+
+#include "scene.h"
+
+#include <map>
+#include <string>
+
+namespace clrender {
+
+/// What the command line may change while a scene is read.
+struct LoadOptions {
+    std::map<std::string, std::string> defines; ///< -D name=value
+};
+
+/// Reads a Mitsuba XML scene, or a bare .obj / .ply model (given a framing camera and a soft
+/// light). Throws InputError. Warns of every -D that nothing uses and of all that is ignored.
+Scene load_scene(const std::string &path, const LoadOptions &options = {});
+
+} // namespace clrender

@@ -1,0 +1,156 @@
+#pragma once
+/// The parsed scene: plain structs in double precision, validated by the readers, with the defaults
+/// of Mitsuba 3. Nothing here knows of OpenCL. Everything refers to everything else by index.
+
+#include "../error.h"
+#include "../image/image.h"
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace clrender {
+
+using Rgb = glm::dvec3;         ///< linear sRGB primaries, may exceed 1 for radiance
+inline constexpr int none = -1; ///< "no such index"
+
+enum class TextureKind { constant, bitmap, checkerboard };
+enum class TextureFilter { bilinear, nearest };
+enum class TextureWrap { repeat, mirror, clamp };
+
+/// A colour over a surface, looked up at to_uv * (u, v, 1).
+struct Texture {
+    TextureKind kind = TextureKind::constant;
+    Rgb value{0.5};                      ///< constant
+    std::shared_ptr<const Image> bitmap; ///< bitmap; shared by all textures that name the same file
+    bool raw = false;                    ///< bitmap: u8 data are linear, not sRGB-encoded
+    TextureFilter filter = TextureFilter::bilinear;
+    TextureWrap wrap = TextureWrap::repeat;
+    Rgb color0{0.4}, color1{0.2}; ///< checkerboard
+    glm::dmat3 to_uv{1.0};
+};
+
+enum class BsdfKind { diffuse, conductor, dielectric, twosided };
+
+/// One BSDF. Colours are indices into Scene::textures.
+struct Bsdf {
+    BsdfKind kind = BsdfKind::diffuse;
+    int reflectance = none;            ///< diffuse
+    int specular_reflectance = none;   ///< conductor, dielectric; none = 1
+    int specular_transmittance = none; ///< dielectric; none = 1
+    bool perfect_mirror = true;        ///< conductor with material "none": Fresnel factor 1
+    Rgb eta{0.0}, k{1.0};              ///< conductor, when not perfect_mirror
+    double int_ior = 1.5046, ext_ior = 1.000277; ///< dielectric (bk7 in air)
+    int front = none, back = none; ///< twosided: indices of the nested BSDFs (equal if only one)
+    std::string id;
+    SourceLocation where;
+};
+
+/// An indexed triangle mesh in its own object space, before Shape::to_world.
+struct Mesh {
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::vec3> normals; ///< per vertex, unit length, or empty: flat
+    std::vector<glm::vec2> uvs;     ///< per vertex, or empty
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+enum class ShapeKind { sphere, rectangle, disk, mesh };
+
+/// A shape with its place, surface and light. Geometry, normals and (u, v) are Mitsuba's: the
+/// rectangle is [-1,1]^2 in z = 0 with normal +z and uv in [0,1]^2, the disk is the unit disk in
+/// z = 0, the sphere is |x| = 1 (its reader folds `center` and `radius` into to_world). A cube is
+/// read as a mesh.
+struct Shape {
+    ShapeKind kind = ShapeKind::sphere;
+    glm::dmat4 to_world{1.0};
+    std::shared_ptr<const Mesh> mesh;
+    bool flip_normals = false;
+    int bsdf = none;    ///< index; the readers give a default diffuse .5 BSDF to shapes without one
+    int emitter = none; ///< index of an area emitter
+    std::string id;
+    SourceLocation where;
+};
+
+enum class EmitterKind { point, area, constant, envmap };
+
+struct Emitter {
+    EmitterKind kind = EmitterKind::area;
+    int radiance = none;      ///< area, constant: texture index (constant: a constant one)
+    Rgb intensity{0.0};       ///< point: W/sr
+    glm::dvec3 position{0.0}; ///< point
+    int shape = none;         ///< area
+    std::shared_ptr<const Image> bitmap; ///< envmap: latitude-longitude, at least 2 x 3 pixels
+    bool raw = false;                    ///< envmap: u8 data are linear
+    double scale = 1;                    ///< envmap
+    glm::dmat4 to_world{1.0};            ///< envmap
+    SourceLocation where;
+};
+
+enum class SensorKind { perspective, thinlens };
+enum class FovAxis { x, y, diagonal, smaller, larger };
+
+/// The camera looks along +z of its own space, +y up and +x to the left of the picture.
+struct Sensor {
+    SensorKind kind = SensorKind::perspective;
+    glm::dmat4 to_world{1.0};
+    double fov = 52.2; ///< degrees along fov_axis; focal_length is folded into (fov, diagonal)
+    FovAxis fov_axis = FovAxis::x;
+    std::optional<double> near_clip, far_clip; ///< only where the file states them
+    glm::dvec2 principal_point_offset{0.0};    ///< fractions of the film's width and height
+    double aperture_radius = 0;                ///< thinlens
+    double focus_distance = 1;                 ///< thinlens
+    SourceLocation where;
+};
+
+enum class FilterKind { box, tent, gaussian, mitchell, catmullrom, lanczos };
+
+/// Reconstruction filter; defaults are Mitsuba's.
+struct ReconstructionFilter {
+    FilterKind kind = FilterKind::gaussian;
+    double radius = 1;             ///< tent (1)
+    double stddev = 0.5;           ///< gaussian; its radius is 4 stddev
+    double b = 1. / 3, c = 1. / 3; ///< mitchell
+    int lobes = 3;                 ///< lanczos
+};
+
+enum class PixelFormat { luminance, luminance_alpha, rgb, rgba, xyz, xyza };
+
+struct FilmSettings {
+    int width = 768, height = 576;
+    int crop_x = 0, crop_y = 0, crop_width = 0,
+        crop_height = 0; ///< resolved: never 0 after reading
+    ReconstructionFilter filter;
+    PixelFormat pixel_format = PixelFormat::rgb;
+    SourceLocation where;
+};
+
+enum class IntegratorKind { path, direct, depth };
+
+struct Integrator {
+    IntegratorKind kind = IntegratorKind::path;
+    int max_depth = -1; ///< path: edges of the longest path; -1 = unbounded
+    int rr_depth = 5;   ///< path: roulette from this depth on
+    bool hide_emitters = false;
+    int emitter_samples = 1; ///< direct
+    int bsdf_samples = 1;    ///< direct
+    SourceLocation where;
+};
+
+struct Scene {
+    std::string name; ///< the scene file without folder and extension
+    std::vector<Texture> textures;
+    std::vector<Bsdf> bsdfs;
+    std::vector<Shape> shapes;
+    std::vector<Emitter> emitters;
+    Sensor sensor;
+    FilmSettings film;
+    Integrator integrator;
+    int sample_count = 16;
+};
+
+} // namespace clrender
