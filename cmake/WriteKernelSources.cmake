@@ -1,0 +1,20 @@
+# Script mode: writes OUTPUT, a C++ table of the files below KERNEL_DIR. String literals are cut into
+# pieces of less than 16 KiB, which every compiler accepts.
+file(GLOB_RECURSE files RELATIVE ${KERNEL_DIR} ${KERNEL_DIR}/*.cl ${KERNEL_DIR}/*.clh
+     ${KERNEL_DIR}/*.h ${KERNEL_DIR}/*.def)
+list(SORT files)
+set(text "#include \"device/kernel_sources.h\"\n\nnamespace clrender {\n\nconst std::vector<KernelSource> &embedded_kernel_sources() {\n    static const std::vector<KernelSource> sources = {\n")
+foreach(name IN LISTS files)
+  file(READ ${KERNEL_DIR}/${name} content)
+  string(LENGTH "${content}" length)
+  string(APPEND text "        {\"${name}\",\n")
+  set(position 0)
+  while(position LESS length)
+    string(SUBSTRING "${content}" ${position} 12000 piece)
+    string(APPEND text "R\"KERNEL(${piece})KERNEL\"\n")
+    math(EXPR position "${position} + 12000")
+  endwhile()
+  string(APPEND text "        },\n")
+endforeach()
+string(APPEND text "    };\n    return sources;\n}\n\n} // namespace clrender\n")
+file(WRITE ${OUTPUT} "${text}")
