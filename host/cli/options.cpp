@@ -1,0 +1,325 @@
+#include "cli/options.h"
+
+#include "image/image.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fmt/core.h>
+#include <limits>
+#include <set>
+
+namespace clrender::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int max_int = std::numeric_limits<int>::max();
+constexpr int max_side = 65536;
+constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
+
+constexpr const char *examples =
+    "Examples:\n"
+    "  clrender scene.xml                       writes scene.png and scene.exr\n"
+    "  clrender model.obj -o model.png          a bare model: the camera frames it\n"
+    "  clrender scene.xml -r 320x180 -s 16      a quick look\n"
+    "  clrender scene.xml -D light_radius=10    sets a <default> of the scene\n"
+    "  clrender compare a.exr b.exr --tolerance 1e-3\n"
+    "\n"
+    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device,\n"
+    "130 interrupted (the picture so far is written).\n";
+
+/// Reads all of `text` as a number; nothing where there is anything else in it.
+template <class Number> std::optional<Number> parse_number(const std::string &text) {
+    Number value{};
+    const char *end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || stop != end)
+        return std::nullopt;
+    return value;
+}
+
+/// A check for CLI11: a whole number from `low` to `high`.
+CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
+    return {[=](std::string &text) {
+                const auto value = parse_number<std::int64_t>(text);
+                if (value && *value >= low && *value <= high)
+                    return std::string();
+                return fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
+            },
+            ""};
+}
+
+/// A check for CLI11: a finite number from `low` to `high`.
+CLI::Validator number(double low, double high) {
+    return {[=](std::string &text) {
+                const auto value = parse_number<double>(text);
+                if (value && std::isfinite(*value) && *value >= low && *value <= high)
+                    return std::string();
+                return fmt::format("'{}' is not a number from {} to {}", text, low, high);
+            },
+            ""};
+}
+
+/// A check for CLI11: one of `words`.
+CLI::Validator one_of(const std::vector<std::string> &words) {
+    return {[=](std::string &text) {
+                if (std::find(words.begin(), words.end(), text) != words.end())
+                    return std::string();
+                return fmt::format("'{}' is not {}", text, CLI::detail::join(words, ", "));
+            },
+            ""};
+}
+
+/// A check for CLI11: some text.
+CLI::Validator not_empty() {
+    return {[](std::string &text) { return text.empty() ? "is empty" : ""; }, ""};
+}
+
+std::optional<Resolution> parse_resolution(const std::string &text) {
+    const std::size_t cross = text.find('x');
+    if (cross == std::string::npos)
+        return std::nullopt;
+    const auto width = parse_number<int>(text.substr(0, cross));
+    const auto height = parse_number<int>(text.substr(cross + 1));
+    if (!width || !height)
+        return std::nullopt;
+    return Resolution{*width, *height};
+}
+
+std::string check_resolution(const std::string &text) {
+    const auto size = parse_resolution(text);
+    if (!size)
+        return fmt::format("'{}' is not WIDTHxHEIGHT, such as 640x480", text);
+    const auto is_side = [](int side) { return side >= 1 && side <= max_side; };
+    if (!is_side(size->width) || !is_side(size->height))
+        return fmt::format("'{}' is not within 1x1 and {}x{}", text, max_side, max_side);
+    if (std::int64_t{size->width} * size->height > max_pixels)
+        return fmt::format("'{}' has more than {} pixels", text, max_pixels);
+    return {};
+}
+
+/// `name=value`; the name as a scene can write it after `$`.
+std::string check_define(const std::string &text) {
+    const std::size_t equals = text.find('=');
+    const auto is_name_char = [](unsigned char c) {
+        return std::isalnum(c) != 0 || std::strchr("_-.", c) != nullptr;
+    };
+    const std::string name = text.substr(0, equals);
+    if (equals == std::string::npos || name.empty() ||
+        !std::all_of(name.begin(), name.end(), is_name_char))
+        return fmt::format("'{}' is not name=value (a name of letters, digits, _ - .)", text);
+    return {};
+}
+
+/// A file that can be made later: found out now, not after an hour of rendering.
+std::string check_new_file(const std::string &path) {
+    if (path.empty())
+        return "the file name is empty";
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored))
+        return fmt::format("'{}' is a folder", path);
+    const fs::path folder = fs::path(path).parent_path();
+    if (!folder.empty() && !fs::is_directory(folder, ignored))
+        return fmt::format("there is no folder '{}'", folder.string());
+    return {};
+}
+
+std::string check_folder(const std::string &path) {
+    std::error_code ignored;
+    return fs::is_directory(path, ignored) ? "" : fmt::format("there is no folder '{}'", path);
+}
+
+std::string check_output(const std::string &path) {
+    if (!path.empty() && !is_writable_image_path(path))
+        return fmt::format("'{}' does not end in .png, .jpg, .hdr, .exr or .pfm", path);
+    return check_new_file(path);
+}
+
+/// What CLI11 fills as text, because it has to be taken apart afterwards.
+struct RawOptions {
+    std::string resolution;
+    std::string lanes = "auto";
+    std::string accel = "bvh";
+    std::vector<std::string> defines;
+    bool list_devices = false;
+};
+
+void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
+    app.add_option("SCENE", options.scene, "Mitsuba 3 scene (.xml) or a model (.obj, .ply)")
+        ->type_name("");
+    app.add_option("-o,--output", options.outputs,
+                   "Picture to write, repeatable: .png .jpg .hdr .exr .pfm\n"
+                   "(default: SCENE's name, .png and .exr, in the current folder)")
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(check_output, ""))
+        ->group("Pictures");
+    app.add_option("-r,--resolution", raw.resolution, "Size of the picture in pixels")
+        ->type_name("WxH")
+        ->check(CLI::Validator(check_resolution, ""))
+        ->group("Pictures");
+    app.add_option("--exposure", options.exposure, "Stops brighter, in .png and .jpg only")
+        ->type_name("EV")
+        ->check(number(-100, 100))
+        ->group("Pictures");
+    app.add_option("-D", raw.defines, "Sets a <default> of the scene, repeatable")
+        ->type_name("name=value")
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(check_define, ""))
+        ->group("Pictures");
+}
+
+void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
+    const char *group = "Sampling (default: as the scene says)";
+    app.add_option("-s,--spp", options.spp, "Samples a pixel")
+        ->type_name("N")
+        ->check(whole_number(1, max_int))
+        ->group(group);
+    app.add_option("--max-depth", options.max_depth, "Longest path in segments, -1: no limit")
+        ->type_name("N")
+        ->check(whole_number(-1, max_int))
+        ->group(group);
+    app.add_option("--rr-depth", options.rr_depth, "Depth from which roulette ends paths")
+        ->type_name("N")
+        ->check(whole_number(1, max_int))
+        ->group(group);
+    app.add_option("--seed", options.seed, "Another seed, other noise")
+        ->type_name("N")
+        ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()))
+        ->group(group);
+    app.add_flag("--pixel-centers", options.pixel_centers,
+                 "All samples at the centres of the pixels, no filter")
+        ->group(group);
+    app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
+        ->type_name("WHICH")
+        ->check(one_of({"bvh", "none"}))
+        ->group(group);
+}
+
+void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
+    const char *group = "Device and run";
+    app.add_option("-d,--device", options.device,
+                   "auto, cpu, gpu, an INDEX of the list, or part of a name (default: auto)")
+        ->type_name("SPEC")
+        ->check(not_empty())
+        ->group(group);
+    app.add_flag("--list-devices", raw.list_devices, "Lists the devices and ends")->group(group);
+    app.add_option("--lanes", raw.lanes, "Paths side by side: auto, 1, 4, 8, 16 (default: auto)")
+        ->type_name("N")
+        ->check(one_of({"auto", "1", "4", "8", "16"}))
+        ->group(group);
+    app.add_option("--kernel-dir", options.kernel_dir,
+                   "Kernel sources instead of the built-in ones")
+        ->type_name("FOLDER")
+        ->check(CLI::Validator(check_folder, ""))
+        ->group(group);
+    app.add_option("--stats", options.stats, "Writes the figures of the run as JSON")
+        ->type_name("FILE.json")
+        ->check(CLI::Validator(check_new_file, ""))
+        ->group(group);
+    app.add_flag("--check", options.check, "Reads and checks the scene, renders nothing")
+        ->group(group);
+    app.add_flag("-q,--quiet", options.quiet, "Warnings and errors only")->group(group);
+    app.add_flag("-v,--verbose", options.verbose, "Tells what is done and how long it takes")
+        ->group(group);
+    app.set_version_flag("--version", "clrender " CLRENDER_VERSION, "Prints the version")
+        ->group(group);
+    app.set_help_flag("-h,--help", "Prints this help")->group(group);
+
+    // For the tests that a picture does not depend on how it is cut into launches; not in --help.
+    app.add_option("--batch", options.batch)->check(whole_number(1, max_int))->group("");
+    app.add_option("--tile", options.tile)->check(whole_number(1, max_int))->group("");
+}
+
+CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {
+    CLI::App *command = app.add_subcommand(
+        "compare", "Prints how far picture A is from picture B: mean squared error, relMSE,\n"
+                   "bias, largest difference; exit code 1 beyond the tolerance");
+    command->footer("");
+    command->add_option("A", compare.a, "A picture")->required()->type_name("");
+    command->add_option("B", compare.b, "The reference")->required()->type_name("");
+    command
+        ->add_option("--tolerance", compare.tolerance,
+                     "The largest relMSE that counts as equal (default: 0)")
+        ->type_name("X")
+        ->check(number(0, 1e9));
+    return command;
+}
+
+/// Takes the texts apart that CLI11 has checked, and fills in the default outputs.
+void finish_options(Options &options, const RawOptions &raw) {
+    if (!raw.resolution.empty())
+        options.resolution = parse_resolution(raw.resolution);
+    options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
+    options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
+    for (const std::string &define : raw.defines) {
+        const std::size_t equals = define.find('=');
+        options.defines[define.substr(0, equals)] = define.substr(equals + 1);
+    }
+    if (options.outputs.empty() && options.command == Command::render) {
+        const std::string stem = fs::path(options.scene).stem().string();
+        options.outputs = {stem + ".png", stem + ".exr"};
+    }
+}
+
+/// What the options may not say together. Throws CLI::ParseError.
+void check_combination(const Options &options) {
+    const auto refuse = [](const std::string &text) {
+        throw CLI::ParseError(text, CLI::ExitCodes::ValidationError);
+    };
+    if (options.command == Command::render && options.scene.empty())
+        refuse("SCENE is missing");
+    if (options.command == Command::compare && !options.scene.empty())
+        refuse("compare takes two pictures and no SCENE");
+    if (options.quiet && options.verbose)
+        refuse("--quiet excludes --verbose");
+    std::set<std::string> files;
+    for (const std::string &output : options.outputs)
+        if (!files.insert(fs::path(output).lexically_normal().string()).second)
+            refuse(fmt::format("--output: '{}' is given twice", output));
+}
+
+/// One line, whatever CLI11 wrote.
+void print_mistake(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    fmt::print(stderr, "clrender: {} (clrender --help lists the options)\n", text);
+}
+
+} // namespace
+
+ParseResult parse_options(int argc, const char *const *argv) {
+    Options options;
+    RawOptions raw;
+    CLI::App app("clrender: a physically based path tracer on OpenCL\n", "clrender");
+    app.get_formatter()->column_width(28);
+    app.set_help_flag(); // added again as the last option, so that --help starts with the pictures
+    app.footer(examples);
+    add_picture_options(app, options, raw);
+    add_sampling_options(app, options, raw);
+    add_run_options(app, options, raw);
+    const CLI::App *compare = add_compare(app, options.compare);
+
+    try {
+        app.parse(argc, argv);
+        options.command = raw.list_devices    ? Command::list_devices
+                          : compare->parsed() ? Command::compare
+                                              : Command::render;
+        check_combination(options);
+    } catch (const CLI::Success &help_or_version) {
+        return {std::nullopt, app.exit(help_or_version)};
+    } catch (const CLI::ParseError &mistake) {
+        print_mistake(mistake.what());
+        return {std::nullopt, 2};
+    }
+    finish_options(options, raw);
+    return {options, 0};
+}
+
+} // namespace clrender::cli

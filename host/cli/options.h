@@ -1,0 +1,62 @@
+#pragma once
+/// The command line: what it may say, checked completely, before anything else runs.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace clrender::cli {
+
+enum class Command { render, compare, list_devices };
+enum class Accel { bvh, none };
+
+struct Resolution {
+    int width = 0;
+    int height = 0;
+};
+
+/// `clrender compare A B`.
+struct CompareOptions {
+    std::string a;
+    std::string b;
+    double tolerance = 0; ///< the largest relMSE that counts as equal
+};
+
+/// A valid command line. What is not set is left to the scene file or to the program.
+struct Options {
+    Command command = Command::render;
+    std::string scene;
+    std::vector<std::string> outputs; ///< never empty when rendering: the defaults are filled in
+    std::string device = "auto";      ///< auto, cpu, gpu, an index or a part of a name
+    std::optional<int> spp;
+    std::optional<Resolution> resolution;
+    std::optional<int> max_depth; ///< -1: no limit, as in a scene file
+    std::optional<int> rr_depth;
+    std::optional<std::uint32_t> seed;
+    int lanes = 0; ///< 1, 4, 8 or 16; 0: as wide as the device
+    std::map<std::string, std::string> defines;
+    double exposure = 0; ///< stops, for the 8-bit formats
+    bool pixel_centers = false;
+    Accel accel = Accel::bvh;
+    bool check = false;
+    std::string stats; ///< JSON file, or empty
+    bool quiet = false;
+    bool verbose = false;
+    std::string kernel_dir; ///< kernel sources to use instead of the embedded ones, or empty
+    int batch = 0;          ///< samples of a pixel in one launch; 0: the program chooses
+    int tile = 0;           ///< pixel groups in one launch; 0: the program chooses
+    CompareOptions compare;
+};
+
+/// Either `options`, or the exit code to end with at once: 0 after --help and --version, 2 after a
+/// mistake, which one line on stderr has explained.
+struct ParseResult {
+    std::optional<Options> options;
+    int exit_code = 0;
+};
+
+ParseResult parse_options(int argc, const char *const *argv);
+
+} // namespace clrender::cli
