@@ -1,0 +1,74 @@
+#ifndef CLR_LAUNCH_DATA_H
+#define CLR_LAUNCH_DATA_H
+/* What changes from launch to launch, and what a launch gives back. */
+
+#include "shared_types.h"
+
+CLR_SHARED_BEGIN
+
+/* Samples are summed in blocks of this many, each from zero and in an order that depends on nothing
+   but the scene and the width of the kernel. A launch traces whole blocks, so the picture does not
+   depend on how many of them one launch takes. */
+#define CLR_BLOCK_SAMPLES 64
+
+/* The camera, the environment and the bounds of the loop. All directions are in world axes.
+   A pixel position (x, y), in pixels from the corner of the whole film, looks along
+   corner + x step_x + y step_y, whose component along the axis is 1. */
+typedef struct {
+    float origin[3];
+    float near_clip; /* along the axis; 0 where the scene states none */
+    float corner[3];
+    float far_clip; /* along the axis; INFINITY where the scene states none */
+    float step_x[3];
+    float aperture_radius;
+    float step_y[3];
+    float focus_distance;
+    float axis[3];
+    float length_unit; /* scene units per renderer's unit, for the depth integrator */
+    float lens_x[3];
+    float pad0;
+    float lens_y[3];
+    float pad1;
+    float env_radiance[3];  /* constant: radiance; map: scale */
+    float env_probability;  /* that light sampling chooses the environment */
+    float env_rotation[12]; /* rows of world-to-environment, each followed by 0 */
+    uint env_width;         /* pixels of the map */
+    uint env_height;
+    uint light_count;
+    int max_depth; /* edges of the longest path; INT_MAX: unbounded */
+    int rr_depth;  /* roulette from this depth on; INT_MAX: never */
+    uint width;    /* of the picture (the crop window), pixels */
+    uint height;
+    int crop_x; /* of the crop window within the whole film */
+    int crop_y;
+    uint seed;
+    uint prim_planar;     /* first planar, ... */
+    uint prim_bvh_sphere; /* ... first sphere in the BVH, ... */
+    uint prim_triangle;   /* ... first triangle */
+    uint total_samples;   /* a pixel, over all launches */
+    float filter_radius;  /* pixels */
+    uint pad2[3];
+} FrameData;
+CLR_STATIC_SIZE(FrameData, 256);
+
+/* Sums over the samples of a pixel: R, G, B, alpha and the squares of R, G, B (the last entry is
+   unused), each with the compensation of Kahan's summation. */
+typedef struct {
+    float sum[4];
+    float sum_lost[4];
+    float square[4];
+    float square_lost[4];
+} FilmPixel;
+CLR_STATIC_SIZE(FilmPixel, 64);
+
+/* What one work-item counted, over all launches. */
+typedef struct {
+    uint rays_low;
+    uint rays_high;
+    uint nonfinite;       /* samples that were not finite; they count as black */
+    uint first_nonfinite; /* pixel index of the first, valid where nonfinite > 0 */
+} ItemCounters;
+CLR_STATIC_SIZE(ItemCounters, 16);
+
+CLR_SHARED_END
+#endif

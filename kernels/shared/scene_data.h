@@ -1,0 +1,153 @@
+#ifndef CLR_SCENE_DATA_H
+#define CLR_SCENE_DATA_H
+/* The scene as it lies in device memory. Lengths are in the renderer's own units: recentred, and
+   scaled by a power of two. Colours are linear sRGB. */
+
+#include "shared_types.h"
+
+CLR_SHARED_BEGIN
+
+/* "No such index" in every uint field. */
+#define CLR_NONE 0xffffffffu
+
+/* Primitives are numbered through: first the spheres and then the planars that every ray tests,
+   lane-wise; then the spheres in the BVH; then the triangles. */
+
+/* A sphere; a negative radius turns its normal inwards. */
+typedef struct {
+    float center[3];
+    float radius;
+} Sphere;
+CLR_STATIC_SIZE(Sphere, 16);
+
+/* A rectangle or a disk: points origin + a du + b dv, with |a|, |b| <= 1 or a^2 + b^2 <= 1.
+   `ra` and `rb` are the dual vectors: a = ra . (p - origin). */
+typedef struct {
+    float origin[3];
+    uint is_disk;
+    float normal[3];
+    float area;
+    float du[3];
+    float pad0;
+    float dv[3];
+    float pad1;
+    float ra[3];
+    float pad2;
+    float rb[3];
+    float pad3;
+} Planar;
+CLR_STATIC_SIZE(Planar, 96);
+
+/* What a primitive belongs to. The materials are those of the two sides, front | back << 16;
+   CLR_NO_MATERIAL reflects nothing. */
+#define CLR_NO_MATERIAL 0xffffu
+typedef struct {
+    uint materials;
+    uint emitter;
+} ShapeInfo;
+CLR_STATIC_SIZE(ShapeInfo, 8);
+
+#define CLR_BSDF_DIFFUSE 0u
+#define CLR_BSDF_CONDUCTOR 1u
+#define CLR_BSDF_DIELECTRIC 2u
+#define CLR_BSDF_MIRROR 3u /* a conductor whose Fresnel factor is 1 */
+
+/* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
+   a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
+   Dielectric: eta[0] is interior over exterior index. */
+typedef struct {
+    float color[3];
+    uint kind;
+    float color2[3];
+    uint texture;
+    float eta[3];
+    uint texture2;
+    float k[3];
+    uint pad;
+} Material;
+CLR_STATIC_SIZE(Material, 64);
+
+#define CLR_LIGHT_POINT 0u
+#define CLR_LIGHT_SPHERE 1u
+#define CLR_LIGHT_PLANAR 2u
+#define CLR_LIGHT_TRIANGLE 3u
+#define CLR_LIGHT_ENVIRONMENT 4u
+
+/* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
+   light triangles. `probability` is that of being chosen. Point: radiance holds the intensity,
+   times the square of the unit of length. Sphere: `area` holds the radius. */
+typedef struct {
+    float position[3];
+    uint kind;
+    float radiance[3];
+    uint texture;
+    uint prim;
+    float probability;
+    float area;
+    uint pad;
+} Light;
+CLR_STATIC_SIZE(Light, 48);
+
+/* What a path that meets an emitter by chance needs: its radiance, and the density with which light
+   sampling would have chosen this point: per unit area for planars and triangles, the probability
+   of being chosen for spheres (kind says which). */
+typedef struct {
+    float radiance[3];
+    uint texture;
+    float density;
+    uint kind;
+    float center[3];
+    float radius;
+    uint pad[2];
+} EmitterInfo;
+CLR_STATIC_SIZE(EmitterInfo, 48);
+
+/* An emissive triangle: v0 and two edges, front side by their cross product. With vertex normals
+   (`smooth`), `normals` tell the front side as they do for shading. */
+typedef struct {
+    float v0[3];
+    uint smooth;
+    float e1[3];
+    float pad0;
+    float e2[3];
+    float pad1;
+    float normals[9];
+    float uvs[6];
+    float pad2;
+} LightTriangle;
+CLR_STATIC_SIZE(LightTriangle, 112);
+
+/* Walker's alias table: entry i keeps its own index below `threshold`, else yields `alias`. */
+typedef struct {
+    float threshold;
+    uint alias;
+} AliasEntry;
+CLR_STATIC_SIZE(AliasEntry, 8);
+
+#define CLR_TEXTURE_BITMAP_U8 0u
+#define CLR_TEXTURE_BITMAP_F32 1u
+#define CLR_TEXTURE_CHECKERBOARD 2u
+
+#define CLR_WRAP_REPEAT 0u
+#define CLR_WRAP_MIRROR 1u
+#define CLR_WRAP_CLAMP 2u
+
+/* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
+   bytes in the u8 array (through decode table `decode`: 0 linear, 1 sRGB), or triples of floats. */
+typedef struct {
+    float to_uv[6];
+    uint kind;
+    uint wrap;
+    uint width;
+    uint height;
+    uint offset;
+    uint nearest;
+    float color0[3];
+    uint decode;
+    float color1[3];
+    uint pad;
+} Texture;
+CLR_STATIC_SIZE(Texture, 80);
+
+CLR_SHARED_END
+#endif
