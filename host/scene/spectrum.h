@@ -1,0 +1,32 @@
+#pragma once
+/// Spectra to linear sRGB, with the numbers of Mitsuba 3's RGB mode.
+
+#include "scene.h"
+
+#include <vector>
+
+namespace clrender {
+
+/// Values at ascending wavelengths (nm), linear in between, 0 outside; or, with no wavelengths,
+/// one value for all of them.
+struct Spectrum {
+    std::vector<double> wavelengths, values;
+};
+
+/// What a spectrum stands for decides its conversion: quantities that light is multiplied with are
+/// weighted by the illuminant D65 (so that 1 is white), lights are not. Reflectances are clamped to
+/// [0, 1], everything else to be no less than 0.
+enum class SpectrumUse { reflectance, refractive_index, emission };
+
+struct SpectrumColour {
+    Rgb rgb;
+    bool clamped; ///< it lay outside of what the primaries can show
+};
+
+/// Linear sRGB of a spectrum that has one value, or two and more at wavelengths.
+SpectrumColour spectrum_to_rgb(const Spectrum &spectrum, SpectrumUse use);
+
+/// The colour of a light with the same power at every wavelength.
+Rgb uniform_emission(double value);
+
+} // namespace clrender
