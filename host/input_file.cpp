@@ -1,0 +1,70 @@
+#include "input_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <new>
+
+namespace clrender {
+
+InputFile::InputFile(const std::string &path, const SourceLocation &referrer)
+    : path_(path), referrer_(referrer) {
+    if (path.empty() || path.find('\0') != std::string::npos)
+        fail("not a file name, expected the path of a file");
+
+    // Without O_NONBLOCK a FIFO that nobody writes to would block here.
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor_ < 0)
+        fail(std::string("cannot be opened (") + std::strerror(errno) +
+             "), expected a readable file");
+
+    struct stat status = {};
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+        ::close(descriptor_);
+        fail(S_ISDIR(status.st_mode) ? "is a folder, expected a file"
+                                     : "is not a regular file, expected a file");
+    }
+    size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+InputFile::~InputFile() {
+    ::close(descriptor_);
+}
+
+std::size_t InputFile::read(char *buffer, std::size_t count) {
+    std::size_t done = 0;
+    while (done < count) {
+        const ssize_t got = ::read(descriptor_, buffer + done, count - done);
+        if (got == 0)
+            break;
+        if (got < 0 && errno != EINTR)
+            fail(std::string("cannot be read (") + std::strerror(errno) + ")");
+        if (got > 0)
+            done += static_cast<std::size_t>(got);
+    }
+    return done;
+}
+
+void InputFile::fail(const std::string &reason) const {
+    if (referrer_.file.empty())
+        throw InputError({path_, 0}, reason);
+    throw InputError(referrer_, path_ + ": " + reason);
+}
+
+std::string read_input_file(const std::string &path, const SourceLocation &referrer) {
+    InputFile file(path, referrer);
+    std::string bytes;
+    try {
+        bytes.resize(file.size());
+    } catch (const std::exception &) {
+        throw InputError(referrer.file.empty() ? SourceLocation{path, 0} : referrer,
+                         path + ": does not fit into memory");
+    }
+    bytes.resize(file.read(bytes.data(), bytes.size()));
+    return bytes;
+}
+
+} // namespace clrender

@@ -1,0 +1,244 @@
+/// OBJ files, through tinyobjloader: it parses the numbers of lines that have been checked, we
+/// resolve and check the indices, join equal corners and cut polygons into fans.
+
+#include "../log.h"
+#include "mesh_io.h"
+#include "mesh_mtl.h"
+#include "mesh_normals.h"
+#include "obj_lines.h"
+
+#define TINYOBJLOADER_USE_DOUBLE
+#define TINYOBJLOADER_IMPLEMENTATION
+#include <tiny_obj_loader.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <istream>
+#include <unordered_map>
+
+namespace clrender {
+
+namespace {
+
+/// One vertex of the mesh: indices from 0 into the file's v, vt and vn lists; none = absent.
+struct Corner {
+    int position = none, uv = none, normal = none;
+    bool operator==(const Corner &) const = default;
+};
+
+struct CornerHash {
+    std::size_t operator()(const Corner &corner) const {
+        // The finaliser of SplitMix64 over the three indices.
+        auto mix = [](std::uint64_t x) {
+            x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+            x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+            return x ^ (x >> 31);
+        };
+        const auto word = [](int i) { return static_cast<std::uint32_t>(i); };
+        const std::uint64_t high = mix(word(corner.position) + 0x9e3779b97f4a7c15ULL);
+        return mix(high ^ (std::uint64_t{word(corner.uv)} << 32 | word(corner.normal)));
+    }
+};
+
+/// Collects what the parser finds; vertices get numbered in the order of their first use.
+class ObjBuilder {
+public:
+    ObjBuilder(const std::string &path, const SourceLocation &referrer, bool flip_tex_coords)
+        : lines_(path, referrer, [this](std::string &line) { return filter(line); }),
+          folder_(std::filesystem::path(path).parent_path()), flip_(flip_tex_coords) {}
+
+    /// Reads the file to its end. Throws InputError.
+    void read();
+
+    Mesh mesh;                          ///< normals may be zero vectors: none stated
+    std::vector<int> triangle_material; ///< per triangle: index into material_names, or none
+    std::vector<std::string> material_names;
+    std::vector<std::pair<std::string, SourceLocation>> libraries; ///< MTL files and who names them
+
+private:
+    std::string filter(std::string &line);
+    void add_face(const tinyobj::index_t *corners, int count);
+    std::uint32_t vertex(const tinyobj::index_t &index);
+    int resolve(int index, std::size_t count, const char *what) const;
+
+    ObjLines lines_;
+    std::filesystem::path folder_;
+    bool flip_;
+    std::vector<glm::dvec3> positions_;
+    std::vector<glm::vec3> normals_;
+    std::vector<glm::vec2> uvs_;
+    std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
+    std::unordered_map<std::string, int> material_indices_;
+    int material_ = none;
+};
+
+void ObjBuilder::read() {
+    // The parser calls back for each line that it meets, with the numbers in it.
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = [](void *user, double x, double y, double z, double) {
+        static_cast<ObjBuilder *>(user)->positions_.emplace_back(x, y, z);
+    };
+    callbacks.normal_cb = [](void *user, double x, double y, double z) {
+        const glm::dvec3 normal(x, y, z);
+        const double length = glm::length(normal);
+        static_cast<ObjBuilder *>(user)->normals_.emplace_back(
+            length > 0 ? glm::vec3(normal / length) : glm::vec3(0.0F));
+    };
+    callbacks.texcoord_cb = [](void *user, double u, double v, double) {
+        auto *builder = static_cast<ObjBuilder *>(user);
+        builder->uvs_.emplace_back(glm::dvec2(u, builder->flip_ ? 1 - v : v));
+    };
+    callbacks.index_cb = [](void *user, tinyobj::index_t *corners, int count) {
+        static_cast<ObjBuilder *>(user)->add_face(corners, count);
+    };
+
+    std::istream stream(&lines_);
+    stream.exceptions(std::ios::badbit);
+    std::string warning;
+    std::string error;
+    tinyobj::LoadObjWithCallback(stream, callbacks, this, nullptr, &warning, &error);
+    if (mesh.triangles.empty())
+        throw InputError({lines_.where().file, 0}, "no faces, expected at least one f line");
+
+    // Mitsuba gives coordinates to every vertex as soon as the file has any.
+    if (uvs_.empty())
+        mesh.uvs.clear();
+    if (normals_.empty())
+        mesh.normals.clear();
+}
+
+std::string ObjBuilder::filter(std::string &line) {
+    // Materials are followed here, because their names may contain blanks.
+    const std::size_t begin = line.find_first_not_of(" \t");
+    const std::string_view keyword = std::string_view(line).substr(begin, 6);
+    if (keyword != "usemtl" && keyword != "mtllib")
+        return check_obj_line(line);
+
+    const std::size_t name_begin = std::min(line.find_first_not_of(" \t", begin + 6), line.size());
+    const std::string name = line.substr(name_begin, line.find_last_not_of(" \t") + 1 - name_begin);
+    if (keyword == "mtllib" && !name.empty())
+        libraries.emplace_back((folder_ / name).string(), lines_.where());
+    if (keyword == "usemtl") {
+        const auto [entry, is_new] =
+            material_indices_.try_emplace(name, static_cast<int>(material_names.size()));
+        if (is_new)
+            material_names.push_back(name);
+        material_ = entry->second;
+    }
+    line.clear();
+    return {};
+}
+
+void ObjBuilder::add_face(const tinyobj::index_t *corners, int count) {
+    const std::uint32_t first = vertex(corners[0]);
+    std::uint32_t previous = vertex(corners[1]);
+    for (int i = 2; i < count; ++i) {
+        const std::uint32_t next = vertex(corners[i]);
+        mesh.triangles.push_back({first, previous, next});
+        triangle_material.push_back(material_);
+        previous = next;
+    }
+}
+
+std::uint32_t ObjBuilder::vertex(const tinyobj::index_t &index) {
+    const Corner corner{resolve(index.vertex_index, positions_.size(), "vertex"),
+                        resolve(index.texcoord_index, uvs_.size(), "texture coordinate"),
+                        resolve(index.normal_index, normals_.size(), "normal")};
+    const auto id = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto [entry, is_new] = vertices_.try_emplace(corner, id);
+    if (is_new) {
+        const auto at = [](const auto &list, int i) { return list[static_cast<std::size_t>(i)]; };
+        mesh.positions.push_back(at(positions_, corner.position));
+        mesh.uvs.push_back(corner.uv == none ? glm::vec2(0.0F) : at(uvs_, corner.uv));
+        mesh.normals.push_back(corner.normal == none ? glm::vec3(0.0F)
+                                                     : at(normals_, corner.normal));
+    }
+    return entry->second;
+}
+
+/// Counts positive indices from 1 and negative ones from the end of what has been read so far.
+int ObjBuilder::resolve(int index, std::size_t count, const char *what) const {
+    if (index == 0)
+        return none;
+    const auto size = static_cast<std::int64_t>(count);
+    const std::int64_t resolved = index > 0 ? index - std::int64_t{1} : size + index;
+    if (resolved < 0 || resolved >= size)
+        throw InputError(lines_.where(),
+                         fmt::format("{} {} does not exist, expected an index from 1 to {} (the "
+                                     "number read so far), or its negative",
+                                     what, index, size));
+    return static_cast<int>(resolved);
+}
+
+/// The triangles `selected` of `mesh` with the vertices that they use. `new_index` is scratch
+/// memory for all parts: entries of other parts are recognised by `stamp`.
+Mesh extract(const Mesh &mesh, const std::vector<std::uint32_t> &selected,
+             std::vector<std::pair<int, std::uint32_t>> &new_index, int stamp) {
+    Mesh part;
+    part.triangles.reserve(selected.size());
+    for (const std::uint32_t t : selected) {
+        std::array<std::uint32_t, 3> triangle = mesh.triangles[t];
+        for (std::uint32_t &v : triangle) {
+            auto &[seen_by, id] = new_index[v];
+            if (seen_by != stamp) {
+                seen_by = stamp;
+                id = static_cast<std::uint32_t>(part.positions.size());
+                part.positions.push_back(mesh.positions[v]);
+                if (!mesh.normals.empty())
+                    part.normals.push_back(mesh.normals[v]);
+                if (!mesh.uvs.empty())
+                    part.uvs.push_back(mesh.uvs[v]);
+            }
+            v = id;
+        }
+        part.triangles.push_back(triangle);
+    }
+    return part;
+}
+
+} // namespace
+
+Mesh read_obj_mesh(const std::string &path, const MeshReadOptions &options,
+                   const SourceLocation &referrer) {
+    ObjBuilder builder(path, referrer, options.flip_tex_coords);
+    builder.read();
+    if (options.face_normals)
+        builder.mesh.normals.clear();
+    else
+        complete_normals(builder.mesh);
+    return std::move(builder.mesh);
+}
+
+ObjFile read_obj_file(const std::string &path) {
+    ObjBuilder builder(path, {}, true);
+    builder.read();
+    complete_normals(builder.mesh);
+
+    // A missing material file costs the colours, not the picture.
+    ObjFile file;
+    for (const auto &[library, where] : builder.libraries) {
+        if (!std::filesystem::is_regular_file(library)) {
+            log::warn(where, library + " is not a file; its materials are left out");
+            continue;
+        }
+        for (ObjMaterial &material : read_mtl(library, where))
+            file.materials.push_back(std::move(material));
+    }
+
+    // One part for each material, in the order of their first `usemtl`; unnamed triangles first.
+    std::vector<std::vector<std::uint32_t>> triangles_of(builder.material_names.size() + 1);
+    for (std::size_t t = 0; t < builder.triangle_material.size(); ++t)
+        triangles_of[static_cast<std::size_t>(builder.triangle_material[t] + 1)].push_back(
+            static_cast<std::uint32_t>(t));
+    std::vector<std::pair<int, std::uint32_t>> new_index(builder.mesh.positions.size(), {none, 0});
+    for (std::size_t m = 0; m < triangles_of.size(); ++m)
+        if (!triangles_of[m].empty())
+            file.parts.push_back(
+                {m == 0 ? "" : builder.material_names[m - 1],
+                 extract(builder.mesh, triangles_of[m], new_index, static_cast<int>(m))});
+    return file;
+}
+
+} // namespace clrender
