@@ -1,0 +1,58 @@
+#pragma once
+/// Builds the 8-wide bounding volume hierarchy that kernels/bvh.clh walks.
+
+#include "shared/bvh.h"
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+namespace clrender {
+
+/// A sphere of the tree; `prim` is the id that a hit reports.
+struct BvhSphere {
+    glm::vec3 center{0.0f};
+    float radius = 0.0f;
+    uint prim = BVH_NO_PRIM;
+};
+
+/// What the search for a cheap tree believes, in units of one node visit.
+struct BvhOptions {
+    float node_cost = 1.0f;
+    /// One block of eight triangles or spheres, whether full or not.
+    float block_cost = 1.0f;
+    /// Levels of inner nodes, 1 to BVH_MAX_LEVELS.
+    int max_levels = BVH_MAX_LEVELS;
+    /// False builds on the calling thread alone; the tree is the same.
+    bool parallel = true;
+};
+
+/// The tree as the device reads it. `nodes[0]` is the root and always there; each vector of blocks
+/// is empty when the scene has no such primitive (OpenCL refuses buffers of no bytes).
+struct Bvh {
+    std::vector<BvhNode> nodes;
+    std::vector<TriangleBlock> triangle_blocks;
+    std::vector<SphereBlock> sphere_blocks;
+    /// Primitives left out: no area, a radius that is not positive, or coordinates that are not
+    /// finite or beyond BVH_COORDINATE_LIMIT.
+    std::size_t degenerate = 0;
+    /// Primitives in the tree.
+    std::size_t primitives = 0;
+    /// Inner nodes on the longest way down, at most `BvhOptions::max_levels`.
+    int levels = 0;
+    /// Expected cost of a ray through the root's box, in the options' units.
+    double cost = 0.0;
+};
+
+/// Triangle i has prim id i. Coordinates are float32, already recentred and scaled by the caller.
+/// Binned SAH (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007) down to
+/// single primitives, then the cheapest 8-wide tree found by dynamic programming (Ylitie, Karras,
+/// Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", 2017, section
+/// 3.1). The same input gives the same tree on any number of threads.
+[[nodiscard]] Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles,
+                            std::span<const BvhSphere> spheres = {},
+                            const BvhOptions &options = {});
+
+} // namespace clrender

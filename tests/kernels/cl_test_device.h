@@ -1,0 +1,59 @@
+#pragma once
+/// An OpenCL device for probe kernels: the tests' and benchmarks' own, without the renderer's.
+
+#include "device/kernel_sources.h"
+
+#include <CL/opencl.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace clrender::test {
+
+/// The first device of all platforms, or the one whose number is in CLRENDER_TEST_DEVICE.
+/// Throws cl::Error or std::runtime_error with the build log.
+class ClTestDevice {
+public:
+    ClTestDevice();
+
+    /// The program of one of `sources`, the others being the headers it may include.
+    [[nodiscard]] cl::Program
+    build(const std::string &name, const std::string &options,
+          const std::vector<KernelSource> &sources = embedded_kernel_sources()) const;
+
+    /// A buffer with a copy of `values`; of one unset element when there are none.
+    template <class T> [[nodiscard]] cl::Buffer upload(std::span<const T> values) const {
+        if (values.empty()) {
+            return cl::Buffer(context_, CL_MEM_READ_ONLY, sizeof(T));
+        }
+        // The runtime copies and never writes; its interface has no const.
+        return cl::Buffer(context_, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size_bytes(),
+                          const_cast<T *>(values.data()));
+    }
+
+    [[nodiscard]] cl::Buffer allocate(std::size_t bytes) const {
+        return cl::Buffer(context_, CL_MEM_READ_WRITE, bytes);
+    }
+
+    template <class T>
+    [[nodiscard]] std::vector<T> download(const cl::Buffer &buffer, std::size_t count) const {
+        std::vector<T> values(count);
+        queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, count * sizeof(T), values.data());
+        return values;
+    }
+
+    /// Runs `kernel` over at least `items` work-items, in groups of `local`, and waits.
+    void run(const cl::Kernel &kernel, std::size_t items, std::size_t local = 64) const;
+
+    [[nodiscard]] std::string name() const;
+
+private:
+    cl::Device device_;
+    cl::Context context_;
+    cl::CommandQueue queue_;
+};
+
+/// True under CLRENDER_TEST_SMALL=1: fewer rays, for Oclgrind and other slow devices.
+[[nodiscard]] bool small_tests();
+
+} // namespace clrender::test
