@@ -1,0 +1,17 @@
+#pragma once
+/// `clrender compare A B`.
+
+#include <string>
+
+namespace clrender {
+
+/// Without --tolerance, any difference counts.
+inline constexpr double default_compare_tolerance = 0;
+
+/// Prints to stdout how far picture `a` is from the reference `b`. Returns the exit code: 0, or 1
+/// if the untrimmed relMSE is above `tolerance` or a pixel of either is NaN or infinite. Throws
+/// InputError if a file cannot be read or if sizes or colour channels differ.
+int compare_command(const std::string &a, const std::string &b,
+                    double tolerance = default_compare_tolerance);
+
+} // namespace clrender

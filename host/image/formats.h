@@ -1,0 +1,52 @@
+#pragma once
+/// The file formats behind read_image and write_image. All work on bytes in memory; the readers
+/// throw FormatError, to which read_image adds the file's name.
+
+#include "image.h"
+
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clrender::image_format {
+
+/// What is wrong with the bytes of an image, without the file's name.
+class FormatError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+inline constexpr std::uint64_t max_pixels = std::uint64_t{1} << 28;
+
+/// Throws unless both sizes are positive and there are at most max_pixels, and `bytes` is at
+/// least the least number of bytes that so many pixels take: pixels / `max_pixels_per_byte`.
+void check_size(std::int64_t width, std::int64_t height, std::uint64_t bytes,
+                double max_pixels_per_byte);
+
+/// Throw if the file ends before its last pixel: the decoder fills what is missing with zeros.
+void check_png_complete(std::string_view bytes);
+void check_jpeg_complete(std::string_view bytes);
+void check_bmp_complete(std::string_view bytes);
+void check_tga_complete(std::string_view bytes);
+
+/// PNG, JPEG, BMP and TGA, by content. 8 bits stay; 16 bits are decoded from sRGB to f32.
+Image decode_8bit(std::string_view bytes);
+/// Radiance RGBE, run-length encoded or flat, top row first.
+Image decode_hdr(std::string_view bytes);
+/// Portable float map, both byte orders, times the absolute value of its scale.
+Image decode_pfm(std::string_view bytes);
+/// OpenEXR: R G B [A] or Y [A] of the first part, over the data window.
+Image decode_exr(std::string_view bytes);
+
+/// `image` as a file in memory. 8-bit formats: sRGB, clamped, times 2^exposure.
+std::string encode_png(const Image &image, double exposure);
+std::string encode_jpeg(const Image &image, double exposure);
+std::string encode_hdr(const Image &image);
+std::string encode_pfm(const Image &image);
+std::string encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
+                       const std::vector<ImageLayer> &extra_layers);
+
+} // namespace clrender::image_format

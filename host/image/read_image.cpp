@@ -1,0 +1,63 @@
+#include "../input_file.h"
+#include "formats.h"
+#include "image.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <new>
+
+namespace clrender {
+
+namespace {
+
+Image decode(std::string_view bytes, const std::string &path) {
+    using namespace image_format;
+    if (bytes.empty())
+        throw FormatError("the file is empty, expected an image");
+    if (bytes.starts_with("\x76\x2f\x31\x01"))
+        return decode_exr(bytes);
+    if (bytes.starts_with("#?"))
+        return decode_hdr(bytes);
+    if (bytes.size() > 2 && (bytes.starts_with("PF") || bytes.starts_with("Pf")) &&
+        std::isspace(static_cast<unsigned char>(bytes[2])) != 0)
+        return decode_pfm(bytes);
+    if (bytes.starts_with("\x89PNG") || bytes.starts_with("\xFF\xD8") || bytes.starts_with("BM"))
+        return decode_8bit(bytes);
+
+    // TGA has no signature.
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".tga")
+        return decode_8bit(bytes);
+    throw FormatError("unknown format, expected PNG, JPEG, TGA, BMP, HDR, EXR or PFM");
+}
+
+} // namespace
+
+Image read_image(const std::string &path, const SourceLocation &referrer) {
+    const std::string bytes = read_input_file(path, referrer);
+    std::string reason;
+    try {
+        return decode(bytes, path);
+    } catch (const image_format::FormatError &error) {
+        reason = error.what();
+    } catch (const std::bad_alloc &) {
+        reason = "does not fit into memory";
+    }
+    if (referrer.file.empty())
+        throw InputError({path, 0}, reason);
+    throw InputError(referrer, path + ": " + reason);
+}
+
+double srgb_encode(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+double srgb_decode(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+} // namespace clrender
