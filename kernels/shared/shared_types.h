@@ -6,7 +6,7 @@
 
 #define CLR_ALIGNED(bytes) __attribute__((aligned(bytes)))
 
-#ifdef __OPENCL_VERSION__
+#ifdef __OPENCL_C_VERSION__
 
 #define CLR_SHARED_BEGIN
 #define CLR_SHARED_END
