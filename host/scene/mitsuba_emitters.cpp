@@ -1,0 +1,110 @@
+/// Emitters: point, area, constant, envmap.
+
+#include "../log.h"
+#include "mitsuba_scene.h"
+#include "mitsuba_text.h"
+
+namespace clrender::mitsuba {
+
+namespace {
+
+const std::vector<std::string> emitter_types{"point", "area", "constant", "envmap"};
+
+/// Weights steer the sampling of lights, not the picture, unless a light is never sampled.
+void accept_sampling_weight(Properties &properties) {
+    if (!(properties.number("sampling_weight", 1) > 0))
+        throw UnsupportedError(properties.where("sampling_weight"),
+                               properties.description() +
+                                   ": \"sampling_weight\" is not positive, expected a number "
+                                   "above 0");
+}
+
+} // namespace
+
+void SceneReader::read_emitter(int object) {
+    Properties properties(document_, object);
+    const std::string &type = properties.object().type;
+    if (type == "area") {
+        if (area_emitters_.count(object) == 0)
+            log::warn(properties.where(), "area light outside of a shape is ignored");
+        return;
+    }
+
+    Emitter emitter;
+    emitter.where = properties.where();
+    if (type == "point") {
+        read_point(properties, emitter);
+    } else if (type == "constant") {
+        emitter.kind = EmitterKind::constant;
+        emitter.radiance =
+            add_constant(read_constant(properties, "radiance", SpectrumUse::emission, Rgb(1)));
+        properties.ignore({"to_world"});
+    } else if (type == "envmap") {
+        read_envmap(properties, emitter);
+    } else {
+        fail_unsupported(document_, properties.object(), emitter_types);
+    }
+    accept_sampling_weight(properties);
+    properties.finish();
+
+    // There is one environment at most.
+    if (emitter.kind != EmitterKind::point)
+        for (const Emitter &other : scene_.emitters)
+            if (other.kind == EmitterKind::constant || other.kind == EmitterKind::envmap)
+                throw InputError(emitter.where, properties.description() +
+                                                    " is a second environment, expected one "
+                                                    "\"constant\" or \"envmap\"");
+    scene_.emitters.push_back(std::move(emitter));
+}
+
+void SceneReader::read_point(Properties &properties, Emitter &emitter) {
+    emitter.kind = EmitterKind::point;
+    emitter.intensity = read_constant(properties, "intensity", SpectrumUse::emission, Rgb(1));
+    if (properties.has("position") && properties.has("to_world"))
+        properties.fail("position", "and to_world are both given, expected only one of them");
+    emitter.position =
+        properties.point("position").value_or(glm::dvec3(properties.transform("to_world")[3]));
+}
+
+void SceneReader::read_envmap(Properties &properties, Emitter &emitter) {
+    emitter.kind = EmitterKind::envmap;
+    emitter.scale = properties.number("scale", 1);
+    if (emitter.scale < 0)
+        properties.fail("scale", "is negative, expected no number below 0");
+    emitter.to_world = properties.transform("to_world");
+    properties.ignore({"mis_compensation"});
+    emitter.bitmap = load_image(properties.file("filename"), properties.where("filename"));
+    if (emitter.bitmap->width < 2 || emitter.bitmap->height < 3)
+        properties.fail("filename", "has " + std::to_string(emitter.bitmap->width) + "x" +
+                                        std::to_string(emitter.bitmap->height) +
+                                        " pixels, expected at least 2x3");
+}
+
+int SceneReader::read_area_emitter(int object, int shape) {
+    Properties properties(document_, object);
+    const std::string &type = properties.object().type;
+    if (type == "point" || type == "constant" || type == "envmap")
+        throw InputError(properties.where(),
+                         properties.description() + " inside of a shape, expected an area light");
+    if (type != "area")
+        fail_unsupported(document_, properties.object(), {"area"});
+    if (!area_emitters_.insert(object).second)
+        throw InputError(properties.where(), properties.description() +
+                                                 " belongs to two shapes, expected one for each");
+
+    Emitter emitter;
+    emitter.kind = EmitterKind::area;
+    emitter.where = properties.where();
+    emitter.shape = shape;
+    emitter.radiance = read_colour(properties, "radiance", SpectrumUse::emission);
+    if (emitter.radiance == none)
+        emitter.radiance = add_constant(Rgb(1));
+    if (properties.has("to_world"))
+        properties.fail("to_world", "is given, expected none: the light lies where its shape does");
+    accept_sampling_weight(properties);
+    properties.finish();
+    scene_.emitters.push_back(std::move(emitter));
+    return static_cast<int>(scene_.emitters.size()) - 1;
+}
+
+} // namespace clrender::mitsuba

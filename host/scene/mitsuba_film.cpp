@@ -1,0 +1,104 @@
+/// Films and reconstruction filters.
+
+#include "mitsuba_scene.h"
+#include "mitsuba_text.h"
+
+#include <algorithm>
+
+namespace clrender::mitsuba {
+
+namespace {
+
+constexpr std::int64_t max_side = 65536;
+constexpr std::int64_t max_pixels = std::int64_t{1} << 28U;
+
+void read_size(Properties &properties, FilmSettings &film) {
+    film.width = static_cast<int>(properties.integer("width", film.width, 1, max_side));
+    film.height = static_cast<int>(properties.integer("height", film.height, 1, max_side));
+    if (std::int64_t{film.width} * film.height > max_pixels)
+        properties.fail("width", "times height is " +
+                                     std::to_string(std::int64_t{film.width} * film.height) +
+                                     " pixels, expected at most 268435456");
+
+    // The crop window lies within the film.
+    film.crop_x = static_cast<int>(properties.integer("crop_offset_x", 0, 0, film.width - 1));
+    film.crop_y = static_cast<int>(properties.integer("crop_offset_y", 0, 0, film.height - 1));
+    film.crop_width = static_cast<int>(properties.integer("crop_width", film.width, 1, max_side));
+    film.crop_height =
+        static_cast<int>(properties.integer("crop_height", film.height, 1, max_side));
+    if (film.crop_x + film.crop_width > film.width)
+        properties.fail("crop_width", "reaches beyond the film, expected at most width - "
+                                      "crop_offset_x = " +
+                                          std::to_string(film.width - film.crop_x));
+    if (film.crop_y + film.crop_height > film.height)
+        properties.fail("crop_height", "reaches beyond the film, expected at most height - "
+                                       "crop_offset_y = " +
+                                           std::to_string(film.height - film.crop_y));
+}
+
+} // namespace
+
+ReconstructionFilter read_filter(const Document &document, int object) {
+    const std::vector<std::string> types{"box",      "tent",       "gaussian",
+                                         "mitchell", "catmullrom", "lanczos"};
+    Properties properties(document, object);
+    const auto type = std::find(types.begin(), types.end(), properties.object().type);
+    if (type == types.end())
+        fail_unsupported(document, properties.object(), types);
+
+    ReconstructionFilter filter;
+    filter.kind = static_cast<FilterKind>(type - types.begin());
+    if (filter.kind == FilterKind::tent) {
+        filter.radius = properties.number("radius", filter.radius);
+        if (!(filter.radius > 0))
+            properties.fail("radius", "is not positive, expected a number above 0");
+    } else if (filter.kind == FilterKind::gaussian) {
+        filter.stddev = properties.number("stddev", filter.stddev);
+        if (!(filter.stddev > 0))
+            properties.fail("stddev", "is not positive, expected a number above 0");
+    } else if (filter.kind == FilterKind::mitchell) {
+        filter.b = properties.number("B", filter.b);
+        filter.c = properties.number("C", filter.c);
+    } else if (filter.kind == FilterKind::lanczos) {
+        filter.lobes = static_cast<int>(properties.integer("lobes", filter.lobes, 1, 64));
+    }
+    properties.finish();
+    return filter;
+}
+
+void SceneReader::read_film(int object) {
+    FilmSettings &film = scene_.film;
+    film = FilmSettings();
+    film.crop_width = film.width;
+    film.crop_height = film.height;
+    if (object == none)
+        return;
+
+    Properties properties(document_, object);
+    if (properties.object().type != "hdrfilm")
+        fail_unsupported(document_, properties.object(), {"hdrfilm"});
+    film.where = properties.where();
+    read_size(properties, film);
+    film.pixel_format = static_cast<PixelFormat>(
+        properties.choice("pixel_format", static_cast<std::size_t>(PixelFormat::rgb),
+                          {"luminance", "luminance_alpha", "rgb", "rgba", "xyz", "xyza"}));
+    if (properties.boolean("sample_border", false))
+        throw UnsupportedError(properties.where("sample_border"),
+                               properties.description() +
+                                   ": \"sample_border\" is not supported, expected \"false\"");
+
+    // How the picture is stored is the command line's choice.
+    properties.choice("file_format", 0, {"openexr", "exr", "rgbe", "pfm"});
+    properties.choice("component_format", 0, {"float16", "float32", "uint32"});
+    properties.ignore({"banner", "compensate", "attach_log", "high_quality_edges"});
+
+    const auto filters = properties.children("rfilter");
+    if (filters.size() > 1)
+        throw InputError(document_.where(properties.object(), filters[1]->line),
+                         properties.description() + " has a second rfilter, expected one");
+    if (!filters.empty())
+        film.filter = read_filter(document_, filters[0]->object);
+    properties.finish();
+}
+
+} // namespace clrender::mitsuba

@@ -1,0 +1,81 @@
+#include "mitsuba_scene.h"
+
+#include "../log.h"
+#include "mitsuba_text.h"
+
+namespace clrender::mitsuba {
+
+Scene SceneReader::read() {
+    Properties root(document_, 0);
+    read_shapes(root);
+    read_scene_emitters(root);
+    read_view(root);
+    check_unused_bsdfs(root);
+
+    // Definitions that others refer to have been read with those; here they mean nothing.
+    root.children("texture");
+    root.children("spectrum");
+    for (const char *tag : {"film", "sampler"})
+        for (const Child *child : root.children(tag))
+            log::detail(document_.where(root.object(), child->line).str() + ": <" + tag +
+                        "> outside of a sensor has no effect of its own");
+    root.finish();
+    if (scene_.emitters.empty() && scene_.integrator.kind != IntegratorKind::depth)
+        log::warn(root.where(), "the scene has no light: the picture will be black");
+    return std::move(scene_);
+}
+
+void SceneReader::read_shapes(Properties &root) {
+    std::set<int> seen; // a <ref> to a shape of the scene adds nothing
+    for (const Child *child : root.children("shape"))
+        if (seen.insert(child->object).second)
+            read_shape(child->object);
+    if (scene_.shapes.empty())
+        log::warn(root.where(), "the scene has no shapes");
+}
+
+void SceneReader::read_scene_emitters(Properties &root) {
+    std::set<int> seen;
+    for (const Child *child : root.children("emitter"))
+        if (seen.insert(child->object).second)
+            read_emitter(child->object);
+}
+
+void SceneReader::read_view(Properties &root) {
+    const auto sensors = root.children("sensor");
+    if (sensors.empty()) {
+        log::warn(root.where(), "the scene has no sensor: the camera looks along +z at all of it");
+        place_default_sensor();
+    } else {
+        read_sensor(sensors[0]->object);
+    }
+    if (sensors.size() > 1)
+        log::warn(document_.where(root.object(), sensors[1]->line),
+                  "the scene has " + std::to_string(sensors.size()) +
+                      " sensors: only the first one is used");
+
+    const auto integrators = root.children("integrator");
+    if (integrators.size() > 1)
+        throw InputError(document_.where(root.object(), integrators[1]->line),
+                         "the scene has a second integrator, expected one");
+    if (integrators.empty())
+        log::warn(root.where(), "the scene has no integrator: path tracing is used");
+    else
+        read_integrator(integrators[0]->object);
+}
+
+void SceneReader::check_unused_bsdfs(Properties &root) {
+    SceneReader checker(document_);
+    checker.load_images_ = false;
+    for (const Child *child : root.children("bsdf")) {
+        if (bsdfs_.count(child->object) > 0)
+            continue;
+        try {
+            checker.read_bsdf(child->object);
+        } catch (const UnsupportedError &error) {
+            log::warn(std::string(error.what()) + " (no shape uses it)");
+        }
+    }
+}
+
+} // namespace clrender::mitsuba

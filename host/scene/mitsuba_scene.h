@@ -1,0 +1,88 @@
+#pragma once
+/// From the objects of a scene file to a Scene. Each kind of object has its own .cpp file.
+
+#include "mesh_io.h"
+#include "mitsuba_document.h"
+#include "mitsuba_properties.h"
+#include "scene.h"
+#include "spectrum.h"
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+
+namespace clrender::mitsuba {
+
+class SceneReader {
+public:
+    explicit SceneReader(const Document &document) : document_(document) {}
+
+    /// Throws InputError.
+    Scene read();
+
+private:
+    // mitsuba_scene.cpp
+    void read_shapes(Properties &root);
+    void read_scene_emitters(Properties &root);
+    void read_view(Properties &root);
+    void check_unused_bsdfs(Properties &root);
+    void place_default_sensor();
+
+    // mitsuba_textures.cpp; all return indices into Scene::textures
+    int add_constant(const Rgb &value);
+    int read_texture(int object, SpectrumUse use);
+    int read_bitmap(Properties &properties);
+    int read_checkerboard(Properties &properties);
+    int read_spectrum_object(Properties &properties, SpectrumUse use);
+    /// The colour or texture `name` of an object, or none.
+    int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
+    /// The same where only one colour for the whole surface is supported.
+    Rgb read_constant(Properties &properties, const std::string &name, SpectrumUse use,
+                      const Rgb &fallback);
+    std::shared_ptr<const Image> load_image(const std::string &path, const SourceLocation &where);
+
+    // mitsuba_bsdfs.cpp; all return indices into Scene::bsdfs
+    int read_bsdf(int object);
+    void read_diffuse(Properties &properties, Bsdf &bsdf);
+    void read_conductor(Properties &properties, Bsdf &bsdf);
+    void read_dielectric(Properties &properties, Bsdf &bsdf);
+    void read_twosided(Properties &properties, Bsdf &bsdf);
+    int default_bsdf(double reflectance);
+
+    // mitsuba_shapes.cpp
+    void read_shape(int object);
+    void read_sphere(Properties &properties, Shape &shape);
+    void read_mesh_file(Properties &properties, Shape &shape);
+    void read_surface(Properties &properties, Shape &shape);
+
+    // mitsuba_emitters.cpp
+    void read_emitter(int object);
+    int read_area_emitter(int object, int shape);
+    void read_point(Properties &properties, Emitter &emitter);
+    void read_envmap(Properties &properties, Emitter &emitter);
+
+    // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
+    void read_sensor(int object);
+    void read_sampler(int object);
+    void read_film(int object);
+    void read_integrator(int object);
+
+    const Document &document_;
+    Scene scene_;
+    bool load_images_ = true;             ///< off while objects that no shape uses are checked
+    std::map<int, int> bsdfs_, textures_; ///< by object
+    std::map<double, int> default_bsdfs_; ///< by reflectance
+    std::set<int> open_bsdfs_, area_emitters_;
+    std::map<std::string, std::shared_ptr<const Image>> images_;
+    std::map<std::tuple<std::string, bool, bool>, std::shared_ptr<const Mesh>> meshes_;
+};
+
+/// One of the reconstruction filters.
+ReconstructionFilter read_filter(const Document &document, int object);
+
+/// The world-space box around all shapes; false if there are none.
+bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest);
+
+} // namespace clrender::mitsuba

@@ -1,0 +1,150 @@
+/// Shapes: sphere, rectangle, disk, cube, obj, ply.
+
+#include "cube_mesh.h"
+#include "mitsuba_scene.h"
+#include "mitsuba_text.h"
+#include "mitsuba_transform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+namespace clrender::mitsuba {
+
+namespace {
+
+const std::vector<std::string> shape_types{"sphere", "rectangle", "disk", "cube", "obj", "ply"};
+
+/// True if the columns have the same length and are at right angles, as far as float32 exporters
+/// manage.
+bool is_similarity(const glm::dmat3 &m) {
+    constexpr double tolerance = 1e-4;
+    const double size = glm::length(m[0]);
+    for (int i = 0; i < 3; ++i) {
+        if (std::abs(glm::length(m[i]) - size) > tolerance * size)
+            return false;
+        if (std::abs(glm::dot(m[i], m[(i + 1) % 3])) > tolerance * size * size)
+            return false;
+    }
+    return true;
+}
+
+void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
+    lowest = glm::min(lowest, point);
+    highest = glm::max(highest, point);
+}
+
+} // namespace
+
+void SceneReader::read_shape(int object) {
+    Properties properties(document_, object);
+    const std::string &type = properties.object().type;
+    if (std::find(shape_types.begin(), shape_types.end(), type) == shape_types.end())
+        fail_unsupported(document_, properties.object(), shape_types);
+
+    Shape shape;
+    shape.id = properties.object().id;
+    shape.where = properties.where();
+    shape.to_world = properties.transform("to_world");
+    shape.flip_normals = properties.boolean("flip_normals", false);
+    properties.ignore({"silhouette_sampling_weight"});
+    if (type == "sphere") {
+        read_sphere(properties, shape);
+    } else if (type == "rectangle") {
+        shape.kind = ShapeKind::rectangle;
+    } else if (type == "disk") {
+        shape.kind = ShapeKind::disk;
+    } else {
+        shape.kind = ShapeKind::mesh;
+        if (type == "cube")
+            shape.mesh = cube_mesh();
+        else
+            read_mesh_file(properties, shape);
+    }
+    read_surface(properties, shape);
+    properties.finish();
+    scene_.shapes.push_back(std::move(shape));
+}
+
+void SceneReader::read_sphere(Properties &properties, Shape &shape) {
+    shape.kind = ShapeKind::sphere;
+    const glm::dvec3 center = properties.point("center").value_or(glm::dvec3(0));
+    const double radius = properties.number("radius", 1);
+    if (!(radius > 0))
+        properties.fail("radius", "is not positive, expected a number above 0");
+    if (!is_similarity(glm::dmat3(shape.to_world)))
+        properties.fail("to_world", "is not a uniform scale with a rotation, expected one: an "
+                                    "ellipsoid is not supported");
+
+    // As in Mitsuba, a reflection turns the sphere inside out.
+    if (glm::determinant(glm::dmat3(shape.to_world)) < 0)
+        shape.flip_normals = !shape.flip_normals;
+    shape.to_world = glm::scale(glm::translate(shape.to_world, center), glm::dvec3(radius));
+}
+
+void SceneReader::read_mesh_file(Properties &properties, Shape &shape) {
+    const bool is_obj = properties.object().type == "obj";
+    MeshReadOptions options;
+    options.face_normals = properties.boolean("face_normals", false);
+    options.flip_tex_coords = properties.boolean("flip_tex_coords", is_obj);
+    const std::string path = properties.file("filename");
+
+    // Shapes that show the same file in the same way share it.
+    std::shared_ptr<const Mesh> &mesh = meshes_[std::make_tuple(
+        properties.object().type + ":" + path, options.face_normals, options.flip_tex_coords)];
+    if (!mesh) {
+        const SourceLocation where = properties.where("filename");
+        mesh = std::make_shared<const Mesh>(is_obj ? read_obj_mesh(path, options, where)
+                                                   : read_ply_mesh(path, options, where));
+    }
+    shape.mesh = mesh;
+}
+
+void SceneReader::read_surface(Properties &properties, Shape &shape) {
+    // A shape may have one light; only an area light can be one.
+    const auto emitters = properties.children("emitter");
+    if (emitters.size() > 1)
+        throw InputError(document_.where(properties.object(), emitters[1]->line),
+                         properties.description() + " has a second emitter, expected one");
+    if (!emitters.empty())
+        shape.emitter =
+            read_area_emitter(emitters[0]->object, static_cast<int>(scene_.shapes.size()));
+
+    const auto bsdfs = properties.children("bsdf");
+    if (bsdfs.size() > 1)
+        throw InputError(document_.where(properties.object(), bsdfs[1]->line),
+                         properties.description() + " has a second BSDF, expected one");
+
+    // Without a BSDF a light is black, anything else is grey.
+    shape.bsdf =
+        !bsdfs.empty() ? read_bsdf(bsdfs[0]->object) : default_bsdf(shape.emitter != none ? 0 : .5);
+}
+
+bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest) {
+    lowest = glm::dvec3(std::numeric_limits<double>::infinity());
+    highest = -lowest;
+    for (const Shape &shape : shapes) {
+        const glm::dmat4 &m = shape.to_world;
+        if (shape.kind == ShapeKind::mesh) {
+            for (const glm::dvec3 &position : shape.mesh->positions)
+                extend(lowest, highest, glm::dvec3(m * glm::dvec4(position, 1)));
+            continue;
+        }
+
+        // The half extent along an axis: of a box the sum of its edges, of a ball or disk the
+        // length.
+        const bool is_sphere = shape.kind == ShapeKind::sphere;
+        glm::dvec3 half(0);
+        for (int axis = 0; axis < 3; ++axis) {
+            const glm::dvec3 row(m[0][axis], m[1][axis], is_sphere ? m[2][axis] : 0);
+            half[axis] = shape.kind == ShapeKind::rectangle ? std::abs(row.x) + std::abs(row.y)
+                                                            : glm::length(row);
+        }
+        extend(lowest, highest, glm::dvec3(m[3]) - half);
+        extend(lowest, highest, glm::dvec3(m[3]) + half);
+    }
+    return lowest.x <= highest.x;
+}
+
+} // namespace clrender::mitsuba

@@ -1,0 +1,154 @@
+#include "mitsuba_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <system_error>
+
+namespace clrender::mitsuba {
+
+namespace {
+
+/// Insertions, deletions and replacements that lead from `a` to `b` (Levenshtein).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
+        }
+    }
+    return row.back();
+}
+
+/// The candidate next to `name`, if it is near enough to be what was meant.
+std::optional<std::string> nearest(std::string_view name,
+                                   const std::vector<std::string> &candidates) {
+    constexpr std::size_t longest = 40;
+    if (name.size() > longest)
+        return std::nullopt;
+    std::optional<std::string> best;
+    std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
+    for (const std::string &candidate : candidates) {
+        const std::size_t distance =
+            edit_distance(to_lower(std::string(name)), to_lower(candidate));
+        if (distance < best_distance) {
+            best = candidate;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.front()))
+        text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back()))
+        text.remove_suffix(1);
+    return text;
+}
+
+/// Blanks and one plus sign in front are allowed in numbers, but std::from_chars knows neither.
+std::string_view digits_of(std::string_view text) {
+    text = trimmed(text);
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+        text.remove_prefix(1);
+    return text;
+}
+
+[[noreturn]] void fail(const SourceLocation &where, std::string_view what, std::string_view text,
+                       const std::string &expected) {
+    throw InputError(where,
+                     std::string(what) + " is " + in_quotes(text) + ", expected " + expected);
+}
+
+} // namespace
+
+std::string in_quotes(std::string_view text) {
+    constexpr std::size_t longest = 80;
+    std::string result = "\"";
+    for (const char c : text.substr(0, longest))
+        result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? '?' : c;
+    return result + (text.size() > longest ? "...\"" : "\"");
+}
+
+std::string expected_one_of(std::string_view name, const std::vector<std::string> &candidates) {
+    if (candidates.empty())
+        return "expected nothing of that kind";
+    std::string result = "expected one of: ";
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+        result += (i > 0 ? ", " : "") + candidates[i];
+    if (const auto meant = nearest(name, candidates))
+        return "did you mean \"" + *meant + "\"? " + result;
+    return result;
+}
+
+std::vector<std::string_view> split_list(std::string_view text) {
+    std::vector<std::string_view> parts;
+    const std::string_view separators = " ,\t\r\n";
+    for (std::size_t at = text.find_first_not_of(separators); at != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
+        parts.push_back(text.substr(at, end - at));
+        at = text.find_first_not_of(separators, end);
+    }
+    return parts;
+}
+
+double parse_number(const SourceLocation &where, std::string_view what, std::string_view text) {
+    const std::string_view digits = digits_of(text);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc::result_out_of_range)
+        fail(where, what, text, "a number between 1e-307 and 1e308 in size");
+    if (error != std::errc{} || end != digits.data() + digits.size())
+        fail(where, what, text, "a number");
+    if (!std::isfinite(value))
+        fail(where, what, text, "a finite number");
+    return value;
+}
+
+std::int64_t parse_integer(const SourceLocation &where, std::string_view what,
+                           std::string_view text) {
+    const std::string_view digits = digits_of(text);
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc::result_out_of_range)
+        fail(where, what, text, "an integer of at most 64 bits");
+    if (error != std::errc{} || end != digits.data() + digits.size())
+        fail(where, what, text, "an integer");
+    return value;
+}
+
+bool parse_boolean(const SourceLocation &where, std::string_view what, std::string_view text) {
+    const std::string value = to_lower(std::string(text));
+    if (value != "true" && value != "false")
+        fail(where, what, text, "\"true\" or \"false\"");
+    return value == "true";
+}
+
+std::vector<double> parse_numbers(const SourceLocation &where, std::string_view what,
+                                  std::string_view text) {
+    std::vector<double> numbers;
+    for (const std::string_view part : split_list(text))
+        numbers.push_back(parse_number(where, what, part));
+    return numbers;
+}
+
+std::string to_lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+} // namespace clrender::mitsuba

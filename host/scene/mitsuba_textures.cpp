@@ -1,0 +1,161 @@
+/// Textures, and the colours that may stand where a texture can.
+
+#include "../log.h"
+#include "mitsuba_scene.h"
+#include "mitsuba_text.h"
+
+namespace clrender::mitsuba {
+
+namespace {
+
+const std::vector<std::string> texture_types{"bitmap", "checkerboard", "uniform", "srgb", "d65"};
+
+bool any_below(const Rgb &rgb, double limit) {
+    return rgb.r < limit || rgb.g < limit || rgb.b < limit;
+}
+
+bool any_above(const Rgb &rgb, double limit) {
+    return rgb.r > limit || rgb.g > limit || rgb.b > limit;
+}
+
+/// Mitsuba refuses an <rgb> reflectance above 1, but lets floats and uniform spectra pass.
+void check_range(const Properties &properties, const std::string &name, const Rgb &rgb,
+                 SpectrumUse use, bool is_rgb) {
+    if (any_below(rgb, 0))
+        properties.fail(name, "is negative, expected no value below 0");
+    if (use != SpectrumUse::reflectance || !any_above(rgb, 1))
+        return;
+    if (is_rgb)
+        properties.fail(name, "is above 1, expected an <rgb> from 0 to 1");
+    log::warn(properties.where(name),
+              in_quotes(name) + " is above 1: the surface gives more light than it gets");
+}
+
+/// The colour of a value, or nothing if it is none.
+std::optional<Rgb> colour_of(const Properties &properties, const Property &property,
+                             SpectrumUse use) {
+    const PropertyValue &value = property.value;
+    if (const auto *number = std::get_if<double>(&value))
+        return Rgb(*number);
+    if (const auto *integer = std::get_if<std::int64_t>(&value))
+        return Rgb(static_cast<double>(*integer));
+    if (const auto *rgb = std::get_if<Colour>(&value))
+        return rgb->value;
+    if (const auto *spectrum = std::get_if<Spectrum>(&value)) {
+        const SpectrumColour colour = spectrum_to_rgb(*spectrum, use);
+        if (colour.clamped)
+            log::warn(properties.where(property.name),
+                      "spectrum " + in_quotes(property.name) +
+                          " has a colour outside of sRGB, which is clamped");
+        return colour.rgb;
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+int SceneReader::add_constant(const Rgb &value) {
+    Texture texture;
+    texture.value = value;
+    scene_.textures.push_back(std::move(texture));
+    return static_cast<int>(scene_.textures.size()) - 1;
+}
+
+int SceneReader::read_colour(Properties &properties, const std::string &name, SpectrumUse use) {
+    if (const Property *property = properties.find(name)) {
+        const auto rgb = colour_of(properties, *property, use);
+        if (!rgb)
+            properties.fail(name, "is " + type_name(property->value) +
+                                      ", expected an rgb, a float, a spectrum or a texture");
+        check_range(properties, name, *rgb, use, std::holds_alternative<Colour>(property->value));
+        return add_constant(*rgb);
+    }
+    const Child *child = properties.child(name);
+    if (child == nullptr)
+        return none;
+    const Object &object = document_.at(child->object);
+    if (object.tag != "texture" && object.tag != "spectrum")
+        properties.fail(name, "is a " + object.tag + ", expected a texture or a colour");
+    return read_texture(child->object, use);
+}
+
+Rgb SceneReader::read_constant(Properties &properties, const std::string &name, SpectrumUse use,
+                               const Rgb &fallback) {
+    const int index = read_colour(properties, name, use);
+    if (index == none)
+        return fallback;
+    const Texture texture = scene_.textures.at(static_cast<std::size_t>(index));
+    if (texture.kind != TextureKind::constant)
+        throw UnsupportedError(properties.where(name),
+                               properties.description() + ": " + in_quotes(name) +
+                                   " varies over the surface, expected one colour");
+    return texture.value;
+}
+
+int SceneReader::read_texture(int object, SpectrumUse use) {
+    if (const auto known = textures_.find(object); known != textures_.end())
+        return known->second;
+    Properties properties(document_, object);
+    const std::string &type = properties.object().type;
+    int index = none;
+    if (type == "bitmap")
+        index = read_bitmap(properties);
+    else if (type == "checkerboard")
+        index = read_checkerboard(properties);
+    else if (type == "uniform" || type == "srgb" || type == "d65")
+        index = read_spectrum_object(properties, use);
+    else
+        fail_unsupported(document_, properties.object(), texture_types);
+    properties.finish();
+    textures_[object] = index;
+    return index;
+}
+
+int SceneReader::read_bitmap(Properties &properties) {
+    Texture texture;
+    texture.kind = TextureKind::bitmap;
+    texture.raw = properties.boolean("raw", false);
+    texture.filter =
+        static_cast<TextureFilter>(properties.choice("filter_type", 0, {"bilinear", "nearest"}));
+    texture.wrap =
+        static_cast<TextureWrap>(properties.choice("wrap_mode", 0, {"repeat", "mirror", "clamp"}));
+    texture.to_uv = properties.uv_transform("to_uv");
+    properties.choice("format", 0, {"auto", "variant", "fp16"});
+    properties.ignore({"accel"});
+    const std::string path = properties.file("filename");
+    if (load_images_)
+        texture.bitmap = load_image(path, properties.where("filename"));
+    scene_.textures.push_back(std::move(texture));
+    return static_cast<int>(scene_.textures.size()) - 1;
+}
+
+int SceneReader::read_checkerboard(Properties &properties) {
+    Texture texture;
+    texture.kind = TextureKind::checkerboard;
+    texture.color0 = read_constant(properties, "color0", SpectrumUse::reflectance, texture.color0);
+    texture.color1 = read_constant(properties, "color1", SpectrumUse::reflectance, texture.color1);
+    texture.to_uv = properties.uv_transform("to_uv");
+    scene_.textures.push_back(std::move(texture));
+    return static_cast<int>(scene_.textures.size()) - 1;
+}
+
+int SceneReader::read_spectrum_object(Properties &properties, SpectrumUse use) {
+    // In RGB mode "uniform" and "d65" are grey, also in lights.
+    const std::string &type = properties.object().type;
+    if (type == "srgb")
+        return read_colour(properties, "color", use);
+    const std::string name = type == "d65" ? "scale" : "value";
+    const Rgb value(properties.number(name, 1));
+    check_range(properties, name, value, use, false);
+    return add_constant(value);
+}
+
+std::shared_ptr<const Image> SceneReader::load_image(const std::string &path,
+                                                     const SourceLocation &where) {
+    std::shared_ptr<const Image> &image = images_[path];
+    if (!image)
+        image = std::make_shared<const Image>(read_image(path, where));
+    return image;
+}
+
+} // namespace clrender::mitsuba

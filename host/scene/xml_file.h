@@ -1,0 +1,43 @@
+#pragma once
+/// One XML file in memory that knows the line of every element.
+
+#include "../error.h"
+
+#include <cstdint>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clrender {
+
+/// No scene needs deeper nesting; whoever walks an XmlFile may therefore recurse.
+inline constexpr int max_xml_depth = 64;
+inline constexpr std::uintmax_t max_xml_bytes = std::uintmax_t{256} << 20U;
+
+class XmlFile {
+public:
+    /// Reads and parses `path`: a regular file of UTF-8 text, at most `max_xml_bytes` long, nested
+    /// at most `max_xml_depth` deep. Never blocks. Throws InputError, at `referrer` (if it names a
+    /// file) where the file cannot be opened, else at the offending line.
+    explicit XmlFile(const std::string &path, const SourceLocation &referrer = {});
+
+    [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
+    [[nodiscard]] const std::string &path() const { return path_; }
+    [[nodiscard]] std::size_t size() const { return text_.size(); }
+
+    /// The place of an element.
+    [[nodiscard]] SourceLocation where(const pugi::xml_node &node) const;
+
+private:
+    [[nodiscard]] int line_at(std::ptrdiff_t offset) const;
+    void read(const SourceLocation &referrer);
+    void parse();
+
+    std::string path_;
+    std::string text_; ///< parsed in place; must outlive the document
+    std::vector<std::ptrdiff_t> line_ends_;
+    pugi::xml_document document_;
+};
+
+} // namespace clrender
