@@ -1,0 +1,212 @@
+/// The command line as a contract: exit codes, what is printed and what is written.
+
+#include "program.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace clrender::test;
+
+namespace {
+
+/// A lit floor, quick on any device.
+const char *const small_scene = R"(<scene version="3.0.0">
+    <default name="power" value="10"/>
+    <integrator type="path"><integer name="max_depth" value="4"/></integrator>
+    <sensor type="perspective">
+        <float name="fov" value="60"/>
+        <transform name="to_world"><lookat origin="0,3,-3" target="0,0,0" up="0,1,0"/></transform>
+        <film type="hdrfilm">
+            <integer name="width" value="16"/><integer name="height" value="12"/>
+        </film>
+        <sampler type="independent"><integer name="sample_count" value="4"/></sampler>
+    </sensor>
+    <shape type="rectangle">
+        <transform name="to_world"><rotate x="1" angle="-90"/><scale value="5"/></transform>
+    </shape>
+    <emitter type="point">
+        <point name="position" x="0" y="2" z="0"/><rgb name="intensity" value="$power"/>
+    </emitter>
+</scene>
+)";
+
+} // namespace
+
+TEST_CASE("--version and --help") {
+    const TempFolder folder;
+    const ProgramResult version = run_clrender(folder.path(), {"--version"});
+    CHECK(version.exit_code == 0);
+    CHECK(version.out == "clrender " CLRENDER_VERSION "\n");
+    CHECK(version.err.empty());
+
+    const ProgramResult help = run_clrender(folder.path(), {"--help"});
+    CHECK(help.exit_code == 0);
+    for (const char *option :
+         {"--output", "--device", "--list-devices", "--spp", "--resolution", "--max-depth",
+          "--rr-depth", "--seed", "--lanes", "-D", "--exposure", "--pixel-centers", "--accel",
+          "--check", "--stats", "--quiet", "--verbose", "--version", "compare"})
+        CHECK_THAT(help.out, Catch::Contains(option));
+}
+
+TEST_CASE("--list-devices names at least one device") {
+    const TempFolder folder;
+    const ProgramResult result = run_clrender(folder.path(), {"--list-devices"});
+    CHECK(result.exit_code == 0);
+    CHECK_FALSE(result.out.empty());
+}
+
+TEST_CASE("A wrong option: exit code 2 and one line") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    for (const std::vector<std::string> &arguments : std::vector<std::vector<std::string>>{
+             {"scene.xml", "--no-such-option"}, {"scene.xml", "-s", "0"}, {}}) {
+        const ProgramResult result = run_clrender(folder.path(), arguments);
+        CHECK(result.exit_code == 2);
+        CHECK(is_one_line(result.err));
+        CHECK(result.out.empty());
+    }
+    CHECK_FALSE(folder.has("scene.png"));
+}
+
+TEST_CASE("Wrong input: exit code 2, one line with the place, no picture") {
+    const TempFolder folder;
+    const ProgramResult missing = run_clrender(folder.path(), {"missing.xml"});
+    CHECK(missing.exit_code == 2);
+    CHECK(is_one_line(missing.err));
+    CHECK_THAT(missing.err, Catch::StartsWith("missing.xml:"));
+
+    folder.write("bad.xml", "<scene version=\"3.0.0\">\n  <shape type=\"blob\"/>\n</scene>\n");
+    const ProgramResult bad = run_clrender(folder.path(), {"bad.xml"});
+    CHECK(bad.exit_code == 2);
+    CHECK(is_one_line(bad.err));
+    CHECK_THAT(bad.err, Catch::StartsWith("bad.xml:2:") && Catch::Contains("blob"));
+    CHECK_FALSE(folder.has("bad.png"));
+    CHECK_FALSE(folder.has("bad.exr"));
+}
+
+TEST_CASE("--check reads the scene and writes nothing") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    CHECK(run_clrender(folder.path(), {"--check", "scene.xml"}).exit_code == 0);
+    CHECK_FALSE(folder.has("scene.png"));
+    CHECK_FALSE(folder.has("scene.exr"));
+}
+
+TEST_CASE("Without -o the picture is SCENE.png and SCENE.exr in the current folder") {
+    const TempFolder folder;
+    fs::create_directory(folder.path() / "scenes");
+    folder.write("scenes/small.xml", small_scene);
+    CHECK(run_clrender(folder.path(), {"scenes/small.xml"}).exit_code == 0);
+    CHECK(folder.has("small.png"));
+    CHECK(folder.has("small.exr"));
+}
+
+TEST_CASE("Every output format is written") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    const std::vector<std::string> names = {"a.png", "a.jpg", "a.hdr", "a.exr", "a.pfm"};
+    std::vector<std::string> arguments = {"scene.xml", "-q"};
+    for (const std::string &name : names)
+        arguments.insert(arguments.end(), {"-o", name});
+    const ProgramResult result = run_clrender(folder.path(), arguments);
+    CHECK(result.exit_code == 0);
+    CHECK(result.err.empty());
+    CHECK(result.out.empty());
+    for (const std::string &name : names)
+        CHECK(folder.has(name));
+    CHECK_FALSE(folder.has("scene.png"));
+}
+
+TEST_CASE("A -D that nothing uses is a warning") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    const ProgramResult result =
+        run_clrender(folder.path(), {"--check", "scene.xml", "-D", "power=3", "-D", "sparkle=1"});
+    CHECK(result.exit_code == 0);
+    CHECK_THAT(result.err, Catch::Contains("warning") && Catch::Contains("sparkle"));
+    CHECK_THAT(result.err, !Catch::Contains("power"));
+}
+
+TEST_CASE("--stats holds every figure of the contract") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    REQUIRE(run_clrender(folder.path(), {"scene.xml", "-o", "a.pfm", "--stats", "s.json", "-r",
+                                         "20x10", "-s", "8"})
+                .exit_code == 0);
+    const auto stats = nlohmann::json::parse(read_file(folder.path() / "s.json"));
+    CHECK(stats.at("device").is_string());
+    CHECK(stats.at("lanes").get<int>() >= 1);
+    CHECK(stats.at("width") == 20);
+    CHECK(stats.at("height") == 10);
+    CHECK(stats.at("spp") == 8);
+    CHECK(stats.at("paths") == 20 * 10 * 8);
+    CHECK(stats.at("rays").get<double>() >= stats.at("paths").get<double>());
+    CHECK(stats.at("paths_per_second").get<double>() > 0);
+    CHECK(stats.at("rays_per_second").get<double>() > 0);
+    for (const char *phase : {"parse", "build", "compile", "upload", "render", "write", "total"}) {
+        INFO(phase);
+        CHECK(stats.at("seconds").at(phase).get<double>() >= 0);
+    }
+    CHECK(stats.at("kernel").contains("features"));
+    CHECK(stats.at("kernel").contains("cache"));
+    CHECK(stats.at("memory").at("host_bytes").get<double>() > 0);
+    CHECK(stats.at("memory").at("device_bytes").get<double>() > 0);
+    CHECK(stats.at("triangles").is_number_integer());
+    CHECK(stats.at("nonfinite_samples") == 0);
+}
+
+TEST_CASE("compare: 0 for the same picture, 1 for another, 2 for none") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    REQUIRE(run_clrender(folder.path(), {"scene.xml", "-o", "a.pfm"}).exit_code == 0);
+    REQUIRE(run_clrender(folder.path(), {"scene.xml", "-o", "b.pfm"}).exit_code == 0);
+    REQUIRE(run_clrender(folder.path(), {"scene.xml", "-o", "c.pfm", "-D", "power=20"}).exit_code ==
+            0);
+    const auto compare = [&](const std::vector<std::string> &arguments) {
+        std::vector<std::string> all = {"compare"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        return run_clrender(folder.path(), all);
+    };
+
+    const ProgramResult same = compare({"a.pfm", "b.pfm"});
+    CHECK(same.exit_code == 0);
+    CHECK_THAT(same.out, Catch::Contains("relMSE"));
+    CHECK(compare({"a.pfm", "c.pfm"}).exit_code == 1);
+    CHECK(compare({"a.pfm", "c.pfm", "--tolerance", "1000"}).exit_code == 0);
+
+    const ProgramResult missing = compare({"a.pfm", "no.pfm"});
+    CHECK(missing.exit_code == 2);
+    CHECK(is_one_line(missing.err));
+}
+
+TEST_CASE("No device: exit code 3, one line with the reason") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    const ProgramResult unknown =
+        run_clrender(folder.path(), {"scene.xml", "-d", "no such device"});
+    CHECK(unknown.exit_code == 3);
+    CHECK(is_one_line(unknown.err));
+    CHECK_FALSE(folder.has("scene.png"));
+
+    // An empty list of vendors is a machine without OpenCL; the line names the package to install.
+    const ProgramResult none = run_clrender(folder.path(), {"scene.xml"},
+                                            {{"OCL_ICD_VENDORS", folder.path().string() + "/"}});
+    CHECK(none.exit_code == 3);
+    CHECK(is_one_line(none.err));
+    CHECK_THAT(none.err, Catch::Contains("pocl-opencl-icd"));
+}
+
+TEST_CASE("Ctrl-C writes the picture so far and says so") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    REQUIRE(run_clrender(folder.path(), {"scene.xml", "-o", "warm.pfm"}).exit_code == 0);
+    Program program(folder.path(),
+                    {"scene.xml", "-o", "a.pfm", "-r", "256x256", "-s", "2000000000"});
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    program.send(SIGINT);
+    const ProgramResult result = program.wait();
+    CHECK(result.exit_code == 130);
+    CHECK(folder.has("a.pfm"));
+    CHECK_THAT(result.err, Catch::Contains("nterrupted"));
+    CHECK(result.seconds < 3 + 5);
+}

@@ -1,0 +1,136 @@
+#pragma once
+/// Runs the real clrender as a user does, in a folder of its own.
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace clrender::test {
+
+namespace fs = std::filesystem;
+
+/// A new empty folder, removed with all that is in it.
+class TempFolder {
+public:
+    TempFolder() {
+        std::string pattern = (fs::temp_directory_path() / "clrender_test_XXXXXX").string();
+        if (mkdtemp(pattern.data()) == nullptr)
+            throw std::runtime_error("cannot make a temporary folder");
+        path_ = pattern;
+    }
+    ~TempFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    TempFolder(const TempFolder &) = delete;
+    TempFolder &operator=(const TempFolder &) = delete;
+
+    [[nodiscard]] const fs::path &path() const { return path_; }
+    [[nodiscard]] bool has(const std::string &name) const { return fs::exists(path_ / name); }
+
+    /// Writes a file and returns its name inside the folder.
+    std::string write(const std::string &name, const std::string &content) const {
+        std::ofstream(path_ / name, std::ios::binary) << content;
+        return name;
+    }
+
+private:
+    fs::path path_;
+};
+
+inline std::string read_file(const fs::path &path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+/// What a run left behind. `exit_code` is 128 + N after signal N, as a shell says it.
+struct ProgramResult {
+    int exit_code = 0;
+    std::string out;
+    std::string err;
+    double seconds = 0;
+};
+
+/// A run of clrender that may be sent a signal before it ends.
+class Program {
+public:
+    /// Starts it in `folder`, which also receives what it prints; `environment` is added to ours.
+    Program(const fs::path &folder, std::vector<std::string> arguments,
+            const std::vector<std::pair<std::string, std::string>> &environment = {})
+        : folder_(folder), start_(std::chrono::steady_clock::now()) {
+        arguments.insert(arguments.begin(), CLRENDER_BINARY);
+        std::vector<char *> argv;
+        for (std::string &argument : arguments)
+            argv.push_back(argument.data());
+        argv.push_back(nullptr);
+
+        process_ = fork();
+        if (process_ < 0)
+            throw std::runtime_error("cannot start a process");
+        if (process_ == 0) {
+            redirect("/dev/null", O_RDONLY, STDIN_FILENO);
+            redirect(out_file(), O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
+            redirect(err_file(), O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
+            for (const auto &[name, value] : environment)
+                setenv(name.c_str(), value.c_str(), 1);
+            if (chdir(folder_.c_str()) == 0)
+                execv(argv[0], argv.data());
+            _exit(127);
+        }
+    }
+
+    void send(int signal) const { kill(process_, signal); }
+
+    /// Waits for its end.
+    ProgramResult wait() {
+        int status = 0;
+        waitpid(process_, &status, 0);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+        ProgramResult result;
+        result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        result.out = read_file(out_file());
+        result.err = read_file(err_file());
+        result.seconds = seconds.count();
+        fs::remove(out_file());
+        fs::remove(err_file());
+        return result;
+    }
+
+private:
+    [[nodiscard]] fs::path out_file() const { return folder_ / ".stdout"; }
+    [[nodiscard]] fs::path err_file() const { return folder_ / ".stderr"; }
+
+    static void redirect(const fs::path &file, int flags, int descriptor) {
+        dup2(open(file.c_str(), flags, 0644), descriptor);
+    }
+
+    fs::path folder_;
+    pid_t process_ = 0;
+    std::chrono::steady_clock::time_point start_;
+};
+
+/// Runs clrender in `folder` to its end.
+inline ProgramResult
+run_clrender(const fs::path &folder, const std::vector<std::string> &arguments,
+             const std::vector<std::pair<std::string, std::string>> &environment = {}) {
+    return Program(folder, arguments, environment).wait();
+}
+
+/// True if `text` is one line with its newline, and no more.
+inline bool is_one_line(const std::string &text) {
+    return !text.empty() && text.find('\n') == text.size() - 1;
+}
+
+} // namespace clrender::test
