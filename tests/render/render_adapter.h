@@ -1,0 +1,36 @@
+#pragma once
+/// The one place of these tests that knows how a scene is rendered.
+
+#include "z_test.h"
+
+#include "scene/load_scene.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace clrender::test {
+
+struct TestRender {
+    int spp = 0; ///< 0: the scene's own sample_count
+    std::uint32_t seed = 1;
+    int lanes = 0; ///< 0: as wide as the device
+    bool pixel_centers = false;
+    int batch = 0; ///< samples of a pixel in one launch; 0: the program chooses
+    int tile = 0;  ///< pixel groups in one launch; 0: the program chooses
+};
+
+/// Renders on the machine's default device.
+MeasuredImage render_measured(const Scene &scene, const TestRender &how = {});
+
+/// Reads a scene from its XML text; files in it are found from tests/references.
+Scene scene_from_xml(const std::string &xml,
+                     const std::map<std::string, std::string> &defines = {});
+
+/// The mean over all pixels of one channel.
+double channel_mean(const Image &image, int channel);
+
+/// One value, from the top left corner.
+double value_at(const Image &image, int x, int y, int channel = 0);
+
+} // namespace clrender::test
