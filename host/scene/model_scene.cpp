@@ -162,7 +162,7 @@ void add_surroundings(Scene &scene, const Bounds &bounds) {
     add_shape(scene, ShapeKind::disk,
               glm::scale(look_along(light_center, -to_light), glm::dvec3(1.5 * r)),
               add_diffuse(scene, add_color(scene, Rgb(0.0))));
-    add_light(scene, 10.5 * Rgb(1.0, 0.94, 0.86));
+    add_light(scene, 9.0 * Rgb(1.0, 0.94, 0.86));
     Emitter sky;
     sky.kind = EmitterKind::constant;
     sky.radiance = add_color(scene, Rgb(0.36, 0.4, 0.46));

@@ -16,10 +16,8 @@ constexpr std::size_t chunk_size = 1 << 16;
 constexpr std::size_t max_line_length = 1 << 20;
 constexpr std::string_view blanks = " \t\r\v\f";
 
-/// Consumes an optional integer and returns false if it is 0 or does not fit.
+/// Consumes an integer and returns false if there is none, if it is 0 or if it does not fit.
 bool take_index(const char *&p, const char *end) {
-    if (p == end || *p == '/')
-        return true;
     int value = 0;
     const auto [next, error] = std::from_chars(p, end, value);
     p = next;
@@ -30,16 +28,15 @@ bool take_index(const char *&p, const char *end) {
 bool is_corner(std::string_view word) {
     const char *p = word.data();
     const char *end = p + word.size();
-    if (p == end || *p == '/' || !take_index(p, end))
+    if (!take_index(p, end))
         return false;
-    for (int slot = 1; slot < 3 && p != end; ++slot) {
-        if (*p != '/')
-            return false;
-        ++p;
-        if (!take_index(p, end))
-            return false;
-    }
-    return p == end;
+    const bool has_uv = end - p > 1 && *p == '/' && p[1] != '/';
+    if (has_uv && (++p, !take_index(p, end)))
+        return false;
+    if (p == end)
+        return true;
+    p += has_uv ? 1 : 2;
+    return p < end && p[-1] == '/' && (has_uv || p[-2] == '/') && take_index(p, end) && p == end;
 }
 
 /// `keyword` is followed by at least `least` numbers, and by nothing else.

@@ -1,0 +1,64 @@
+#include "scene/model_scene.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace clrender;
+
+namespace {
+
+const std::string data = std::string(CLRENDER_TEST_DIR) + "/host/data/";
+
+} // namespace
+
+TEST_CASE("a bare model becomes a scene with a floor, two lights and a camera", "[model]") {
+    const Scene scene = load_model(data + "quad.obj");
+    CHECK(scene.name == "quad");
+    CHECK(scene.film.width == 768);
+    CHECK(scene.film.crop_height == 576);
+    CHECK(scene.sample_count == 64);
+    CHECK(scene.integrator.max_depth == 8);
+    REQUIRE(scene.shapes.size() == 3);
+    REQUIRE(scene.emitters.size() == 2);
+    CHECK(scene.shapes[2].emitter == 0);
+    CHECK(scene.emitters[0].shape == 2);
+    for (const Shape &shape : scene.shapes)
+        CHECK(static_cast<std::size_t>(shape.bsdf) < scene.bsdfs.size());
+}
+
+TEST_CASE("the camera frames every vertex", "[model]") {
+    const Scene scene = load_model(data + "quad.obj");
+    const glm::dmat4 to_camera = glm::inverse(scene.sensor.to_world);
+    const double half_width = std::tan(glm::radians(0.5 * scene.sensor.fov));
+    for (const glm::dvec3 &p : scene.shapes[0].mesh->positions) {
+        const glm::dvec4 seen = to_camera * glm::dvec4(p, 1);
+        CHECK(seen.z > 0);
+        CHECK(std::abs(seen.x / seen.z) < half_width);
+        CHECK(std::abs(seen.y / seen.z) < half_width * 0.75);
+    }
+    CHECK(glm::determinant(scene.sensor.to_world) == Approx(1));
+    CHECK(scene.sensor.to_world[1].y > 0);
+}
+
+TEST_CASE("MTL materials become BSDFs and lights", "[model]") {
+    const Scene scene = load_model(data + "materials.obj");
+    REQUIRE(scene.shapes.size() == 5);
+    const Bsdf &clay = scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)];
+    CHECK(clay.kind == BsdfKind::twosided);
+    const Bsdf &front = scene.bsdfs[static_cast<std::size_t>(clay.front)];
+    CHECK(scene.textures[static_cast<std::size_t>(front.reflectance)].value == Rgb(0.8, 0.1, 0.1));
+    REQUIRE(scene.shapes[2].emitter == 0);
+    const auto radiance = static_cast<std::size_t>(scene.emitters[0].radiance);
+    CHECK(scene.textures[radiance].value == Rgb(4));
+}
+
+TEST_CASE("glass and mirrors from an MTL", "[model]") {
+    const Scene scene = load_model(data + "glass.obj");
+    const Bsdf &glass = scene.bsdfs[static_cast<std::size_t>(scene.shapes[0].bsdf)];
+    CHECK(glass.kind == BsdfKind::dielectric);
+    CHECK(glass.int_ior == 1.33);
+    const Bsdf &mirror = scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)];
+    CHECK(mirror.kind == BsdfKind::conductor);
+    CHECK(mirror.perfect_mirror);
+}
