@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -60,7 +61,9 @@ struct ProgramResult {
     int exit_code = 0;
     std::string out;
     std::string err;
-    double seconds = 0;
+    double seconds = 0;     ///< by the clock
+    double cpu_seconds = 0; ///< of all its threads; does not depend on what else the machine does
+    long peak_kib = 0;      ///< the most memory it had
 };
 
 /// A run of clrender that may be sent a signal before it ends.
@@ -96,13 +99,16 @@ public:
     /// Waits for its end.
     ProgramResult wait() {
         int status = 0;
-        waitpid(process_, &status, 0);
+        rusage usage = {};
+        wait4(process_, &status, 0, &usage);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
         ProgramResult result;
         result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
         result.out = read_file(out_file());
         result.err = read_file(err_file());
         result.seconds = seconds.count();
+        result.cpu_seconds = to_seconds(usage.ru_utime) + to_seconds(usage.ru_stime);
+        result.peak_kib = usage.ru_maxrss;
         fs::remove(out_file());
         fs::remove(err_file());
         return result;
@@ -111,6 +117,10 @@ public:
 private:
     [[nodiscard]] fs::path out_file() const { return folder_ / ".stdout"; }
     [[nodiscard]] fs::path err_file() const { return folder_ / ".stderr"; }
+
+    static double to_seconds(const timeval &time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
 
     static void redirect(const fs::path &file, int flags, int descriptor) {
         dup2(open(file.c_str(), flags, 0644), descriptor);
