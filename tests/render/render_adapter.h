@@ -16,8 +16,8 @@ struct TestRender {
     std::uint32_t seed = 1;
     int lanes = 0; ///< 0: as wide as the device
     bool pixel_centers = false;
-    int batch = 0; ///< samples of a pixel in one launch; 0: the program chooses
-    int tile = 0;  ///< pixel groups in one launch; 0: the program chooses
+    int batch_blocks = 0; ///< as in RenderOptions
+    int tile_items = 0;   ///< as in RenderOptions
 };
 
 /// Renders on the machine's default device.

@@ -1,0 +1,129 @@
+/// Changes that must not change the picture: to the bit, or but for the noise.
+
+#include "render_adapter.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+using namespace clrender;
+using namespace clrender::test;
+
+namespace {
+
+/// A scene with every kind of shape and light, scaled by `s` and then moved by `t`.
+Scene small_scene(double s, double t = 0) {
+    const auto at = [&](double x, double y, double z) {
+        return fmt::format("{:.17g} {:.17g} {:.17g}", s * x + t, s * y + t, s * z + t);
+    };
+    const auto place = [&](double size, const std::string &turn, const std::string &where) {
+        return fmt::format(R"(<transform name="to_world"><scale value="{:.17g}"/>{}
+            <translate value="{}"/></transform>)",
+                           s * size, turn, where);
+    };
+    std::string xml =
+        R"(<integrator type="path"><integer name="max_depth" value="5"/></integrator>)";
+    xml += fmt::format(R"(<sensor type="perspective"><float name="fov" value="40"/>
+        <transform name="to_world"><lookat origin="{}" target="{}" up="0 1 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="48"/><integer name="height" value="32"/>
+        <rfilter type="tent"/></film></sensor>)",
+                       at(0, 1, 6), at(0, 0, 0));
+    xml +=
+        R"(<shape type="rectangle">)" + place(6, R"(<rotate x="1" angle="-90"/>)", at(0, -1, 0)) +
+        R"(<bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf></shape>)";
+    xml += fmt::format(R"(<shape type="sphere"><transform name="to_world"><scale value="{:.17g}"/>
+        <translate value="{}"/></transform><bsdf type="dielectric"/></shape>)",
+                       s * 0.75, at(-1.25, -0.25, 0));
+    xml += R"(<shape type="obj"><string name="filename" value="data/blob.obj"/>)" +
+           place(0.75, R"(<rotate y="1" angle="30"/>)", at(1, -0.25, 0)) +
+           R"(<bsdf type="diffuse"><rgb name="reflectance" value=".3 .5 .8"/></bsdf></shape>)";
+    xml += R"(<shape type="disk">)" + place(0.5, R"(<rotate x="1" angle="90"/>)", at(0, 3, 0)) +
+           R"(<emitter type="area"><rgb name="radiance" value="9 8 7"/></emitter></shape>)";
+    xml += fmt::format(R"(<emitter type="point"><point name="position" value="{}"/>
+        <rgb name="intensity" value="{:.17g}"/></emitter>)",
+                       at(2, 2, 3), 4 * s * s);
+    xml += R"(<emitter type="constant"><rgb name="radiance" value=".2 .25 .3"/></emitter>)";
+    return scene_from_xml(xml);
+}
+
+void check_same_by_z_test(const std::string &name, const MeasuredImage &a, const MeasuredImage &b) {
+    const auto verdict = compare_or_save(name, a, b);
+    INFO(verdict.summary);
+    CHECK(verdict.passes);
+}
+
+} // namespace
+
+TEST_CASE("a scene scaled by a power of two gives the same picture to the bit") {
+    const auto original = render_measured(small_scene(1), {.spp = 16});
+    for (const int exponent : {-10, 10}) {
+        const auto scaled = render_measured(small_scene(std::ldexp(1, exponent)), {.spp = 16});
+        INFO("scaled by 2^" << exponent);
+        CHECK(scaled.mean.f32 == original.mean.f32);
+    }
+}
+
+TEST_CASE("a scene that is scaled or moved elsewhere gives the same picture but for the noise") {
+    const auto original = render_measured(small_scene(1), {.spp = 512});
+    check_same_by_z_test("moved", render_measured(small_scene(1, 123.4), {.spp = 512, .seed = 2}),
+                         original);
+    check_same_by_z_test("scaled_up", render_measured(small_scene(1e5), {.spp = 512, .seed = 3}),
+                         original);
+    check_same_by_z_test("scaled_down", render_measured(small_scene(1e-5), {.spp = 512, .seed = 4}),
+                         original);
+}
+
+TEST_CASE("all lane widths give the same picture but for the noise") {
+    const Scene scene = small_scene(1);
+    const std::array widths{1, 4, 8, 16};
+    std::vector<MeasuredImage> pictures;
+    for (const int lanes : widths)
+        pictures.push_back(render_measured(
+            scene, {.spp = 512, .seed = static_cast<std::uint32_t>(lanes), .lanes = lanes}));
+    for (std::size_t i = 1; i < widths.size(); ++i)
+        check_same_by_z_test(fmt::format("lanes_{}_and_1", widths[i]), pictures[i], pictures[0]);
+}
+
+TEST_CASE("the same seed gives the same picture to the bit, another seed another one") {
+    const Scene scene = small_scene(1);
+    const TestRender how{.spp = 64, .seed = 5};
+    const auto first = render_measured(scene, how);
+    CHECK(render_measured(scene, how).mean.f32 == first.mean.f32);
+    CHECK(render_measured(scene, {.spp = 64, .seed = 6}).mean.f32 != first.mean.f32);
+}
+
+TEST_CASE("batches and tiles do not change a bit of the picture") {
+    const Scene scene = small_scene(1);
+    const auto whole = render_measured(scene, {.spp = 64});
+    for (const int batch : {1, 2, 7}) {
+        INFO("batches of " << batch << " blocks of samples");
+        CHECK(render_measured(scene, {.spp = 64, .batch_blocks = batch}).mean.f32 ==
+              whole.mean.f32);
+    }
+    for (const int tile : {8, 32, 1000}) {
+        INFO("tiles of " << tile << " work-items");
+        CHECK(render_measured(scene, {.spp = 64, .tile_items = tile}).mean.f32 == whole.mean.f32);
+    }
+}
+
+TEST_CASE("the stated variance is the variance between seeds") {
+    const Scene scene = small_scene(1);
+    constexpr unsigned runs = 32;
+    std::vector<MeasuredImage> pictures;
+    for (unsigned run = 0; run < runs; ++run)
+        pictures.push_back(render_measured(scene, {.spp = 32, .seed = 100 + run}));
+
+    double stated = 0, measured = 0;
+    for (std::size_t i = 0; i < pictures[0].mean.f32.size(); ++i) {
+        double sum = 0, squares = 0;
+        for (const auto &picture : pictures) {
+            sum += double{picture.mean.f32[i]};
+            squares += double{picture.mean.f32[i]} * double{picture.mean.f32[i]};
+            stated += double{picture.variance.f32[i]} / runs;
+        }
+        measured += (squares - sum * sum / runs) / (runs - 1);
+    }
+    CHECK(stated / measured == Approx(1).epsilon(0.1));
+}
