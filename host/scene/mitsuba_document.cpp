@@ -285,9 +285,10 @@ Spectrum parse_spectrum_element(pugi::xml_node node, const XmlFile &xml, const S
                       : spectrum.wavelengths.size() == 1 || spectrum.values.empty())
         throw InputError(where, "<spectrum> has fewer than two wavelengths, expected at least two");
     for (std::size_t i = 1; i < spectrum.wavelengths.size(); ++i)
-        if (!(spectrum.wavelengths[i] >= spectrum.wavelengths[i - 1]))
-            throw InputError(where,
-                             "the wavelengths of <spectrum> decrease, expected ascending ones");
+        if (!(spectrum.wavelengths[i] > spectrum.wavelengths[i - 1]))
+            throw InputError(
+                where,
+                "the wavelengths of <spectrum> do not ascend, expected each one once, in order");
     return spectrum;
 }
 

@@ -1,5 +1,6 @@
 #include "mitsuba_transform.h"
 
+#include "../log.h"
 #include "mitsuba_text.h"
 
 #include <algorithm>
@@ -34,7 +35,16 @@ glm::dmat4 parse_rotate(pugi::xml_node node, const XmlFile &file) {
     if (!(glm::length(axis) > 0))
         throw InputError(file.where(node),
                          "the axis of <rotate> is 0 0 0, expected a direction, as in y=\"1\"");
-    return glm::rotate(glm::dmat4(1), glm::radians(angle), glm::normalize(axis));
+    if (std::abs(glm::length(axis) - 1) > 1e-3)
+        log::warn(file.where(node), "the axis of <rotate> is not of length 1: as in Mitsuba 3, the "
+                                    "result is not a rotation");
+
+    // Rodrigues' formula with the axis as it is.
+    const double sine = std::sin(glm::radians(angle));
+    const double cosine = std::cos(glm::radians(angle));
+    const glm::dmat3 cross(0, axis.z, -axis.y, -axis.z, 0, axis.x, axis.y, -axis.x, 0);
+    return glm::dmat4(glm::dmat3(cosine) + sine * cross +
+                      (1 - cosine) * glm::outerProduct(axis, axis));
 }
 
 glm::dmat4 parse_matrix(pugi::xml_node node, const XmlFile &file) {
