@@ -20,9 +20,19 @@ Scene SceneReader::read() {
             log::detail(document_.where(root.object(), child->line).str() + ": <" + tag +
                         "> outside of a sensor has no effect of its own");
     root.finish();
+    warn_of_missing(root);
+    return std::move(scene_);
+}
+
+void SceneReader::warn_of_missing(Properties &root) const {
+    if (scene_.shapes.empty())
+        log::warn(root.where(), "the scene has no shapes");
     if (scene_.emitters.empty() && scene_.integrator.kind != IntegratorKind::depth)
         log::warn(root.where(), "the scene has no light: the picture will be black");
-    return std::move(scene_);
+    if (root.children("sensor").empty())
+        log::warn(root.where(), "the scene has no sensor: the camera looks along +z at all of it");
+    if (root.children("integrator").empty())
+        log::warn(root.where(), "the scene has no integrator: path tracing is used");
 }
 
 void SceneReader::read_shapes(Properties &root) {
@@ -30,8 +40,6 @@ void SceneReader::read_shapes(Properties &root) {
     for (const Child *child : root.children("shape"))
         if (seen.insert(child->object).second)
             read_shape(child->object);
-    if (scene_.shapes.empty())
-        log::warn(root.where(), "the scene has no shapes");
 }
 
 void SceneReader::read_scene_emitters(Properties &root) {
@@ -43,12 +51,10 @@ void SceneReader::read_scene_emitters(Properties &root) {
 
 void SceneReader::read_view(Properties &root) {
     const auto sensors = root.children("sensor");
-    if (sensors.empty()) {
-        log::warn(root.where(), "the scene has no sensor: the camera looks along +z at all of it");
+    if (sensors.empty())
         place_default_sensor();
-    } else {
+    else
         read_sensor(sensors[0]->object);
-    }
     if (sensors.size() > 1)
         log::warn(document_.where(root.object(), sensors[1]->line),
                   "the scene has " + std::to_string(sensors.size()) +
@@ -58,9 +64,7 @@ void SceneReader::read_view(Properties &root) {
     if (integrators.size() > 1)
         throw InputError(document_.where(root.object(), integrators[1]->line),
                          "the scene has a second integrator, expected one");
-    if (integrators.empty())
-        log::warn(root.where(), "the scene has no integrator: path tracing is used");
-    else
+    if (!integrators.empty())
         read_integrator(integrators[0]->object);
 }
 

@@ -29,6 +29,7 @@ private:
     void read_view(Properties &root);
     void check_unused_bsdfs(Properties &root);
     void place_default_sensor();
+    void warn_of_missing(Properties &root) const;
 
     // mitsuba_textures.cpp; all return indices into Scene::textures
     int add_constant(const Rgb &value);

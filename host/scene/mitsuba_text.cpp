@@ -7,25 +7,30 @@
 #include <numeric>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 namespace clrender::mitsuba {
 
 namespace {
 
-/// Insertions, deletions and replacements that lead from `a` to `b` (Levenshtein).
+/// Insertions, deletions, replacements and swaps of neighbours that lead from `a` to `b` (optimal
+/// string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
+    std::vector<std::size_t> before(b.size() + 1);
+    std::vector<std::size_t> last(b.size() + 1);
+    std::iota(last.begin(), last.end(), std::size_t{0});
     for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
+        std::vector<std::size_t> row(b.size() + 1);
         row[0] = i + 1;
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
+            row[j + 1] = std::min({row[j] + 1, last[j + 1] + 1, last[j] + (a[i] == b[j] ? 0 : 1)});
+            if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+                row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
         }
+        before = std::move(last);
+        last = std::move(row);
     }
-    return row.back();
+    return last.back();
 }
 
 /// The candidate next to `name`, if it is near enough to be what was meant.
@@ -35,7 +40,7 @@ std::optional<std::string> nearest(std::string_view name,
     if (name.size() > longest)
         return std::nullopt;
     std::optional<std::string> best;
-    std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
+    std::size_t best_distance = std::max<std::size_t>(1, (name.size() + 1) / 3) + 1;
     for (const std::string &candidate : candidates) {
         const std::size_t distance =
             edit_distance(to_lower(std::string(name)), to_lower(candidate));
