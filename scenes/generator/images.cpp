@@ -41,8 +41,8 @@ Vec3 sky_radiance(Vec3 d) {
     const double cover = smoothstep(0.05, 0.75, cloud) * smoothstep(0.02, 0.25, height);
     sky = mix(sky, Vec3{1.25, 1.1, 1.0} * (0.75 + 0.7 * std::exp(-to_sun * 1.5)), 0.65 * cover);
 
-    const double disc = 1 - smoothstep(0.035, 0.085, to_sun);
-    sky = sky + Vec3{1, 0.80, 0.55} * (190 * disc);
+    const double disc = 1 - smoothstep(0.06, 0.14, to_sun);
+    sky = sky + Vec3{1, 0.80, 0.55} * (75 * disc);
     const Vec3 ground = {0.16, 0.14, 0.12};
     return mix(ground, sky, smoothstep(-0.015, 0.01, d.y));
 }

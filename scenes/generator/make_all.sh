@@ -18,7 +18,7 @@ shape ammonite 20000 512x1024
 shape coral 20000 768x768
 shape creature 12000 768x768
 shape knot 20000 1024x512
-shape ribbon 6000 1024x256
+shape ribbon 20000 1024x256
 shape vase 20000 1024x512
-"$make_mesh" creature 1500 "$scenes/meshes/creature_coarse.obj"
+"$make_mesh" creature 1000 "$scenes/meshes/creature_coarse.obj"
 "$make_mesh" sky "$scenes/textures/sky.hdr" --size 512x256

@@ -180,7 +180,10 @@ Surface creature(Detail detail) {
         double r = 0.5;
         for (const Lobe &lobe : lobes)
             r += lobe.height * std::exp(lobe.sharpness * (dot(d, normalize(lobe.axis)) - 1));
-        return Vec3{d.x, d.y, d.z} * r + Vec3{0, 0.78, 0};
+        // A soft floor under it gives it a foot to stand on.
+        const double foot = -0.72, softness = 0.05, y = d.y * r;
+        const double above = std::log1p(std::exp(-std::fabs(y - foot) / softness)) * softness;
+        return Vec3{d.x * r, std::max(y, foot) + above - foot, d.z * r};
     };
     s.colour = [detail](Vec3 p, double, double) {
         // Celadon glaze, thicker and greener below, with a net of fine cracks.
