@@ -141,7 +141,7 @@ TEST_CASE("z-test knows how much a filter correlates its pixels") {
     CHECK(correlation_factor({.kind = FilterKind::tent}) == Approx(2.25).epsilon(1e-3));
     CHECK(correlation_factor({.kind = FilterKind::gaussian}) ==
           Approx(3.14159).epsilon(0.02)); // 4 pi stddev^2, but for the cut tails
-    CHECK(correlation_factor({.kind = FilterKind::lanczos}) == Approx(1).epsilon(0.2));
+    CHECK(correlation_factor({.kind = FilterKind::lanczos}) == Approx(1.25).epsilon(0.02));
 }
 
 TEST_CASE("z-test accepts every stored reference with more noise, and rejects it 3% darker") {
