@@ -58,11 +58,66 @@ void check_png_complete(std::string_view bytes) {
     }
 }
 
+namespace {
+
+std::uint64_t big_endian_16(std::string_view bytes, std::uint64_t offset) {
+    return byte_at(bytes, offset) << 8 | byte_at(bytes, offset + 1);
+}
+
+/// Moves `offset` behind the next JPEG marker and returns its code.
+std::uint64_t next_marker(std::string_view bytes, std::uint64_t &offset) {
+    while (byte_at(bytes, offset) != 0xFF)
+        ++offset;
+    while (byte_at(bytes, offset) == 0xFF)
+        ++offset;
+    return byte_at(bytes, offset++);
+}
+
+bool is_restart(std::uint64_t marker) {
+    return marker >= 0xD0 && marker <= 0xD7;
+}
+
+/// A segment of Huffman tables: stb_image writes beyond its own if one has more than 256 codes.
+void check_huffman_tables(std::string_view segment) {
+    constexpr std::size_t header = 17; // which table, then the number of codes of each length
+    while (!segment.empty()) {
+        std::size_t codes = 0;
+        for (std::size_t i = 1; i < header; ++i)
+            codes += byte_at(segment, i);
+        if (codes > 256 || segment.size() < header + codes)
+            throw FormatError("damaged JPEG (bad Huffman table)");
+        segment.remove_prefix(header + codes);
+    }
+}
+
+} // namespace
+
 void check_jpeg_complete(std::string_view bytes) {
-    // The end marker follows the last start-of-scan marker; both cannot occur within coded data.
-    const std::size_t scan = bytes.rfind("\xFF\xDA");
-    if (scan == std::string_view::npos || bytes.find("\xFF\xD9", scan) == std::string_view::npos)
-        throw FormatError(truncated);
+    constexpr std::uint64_t huffman_tables = 0xC4;
+    constexpr std::uint64_t end = 0xD9;
+    constexpr std::uint64_t scan = 0xDA;
+    std::uint64_t offset = 2;
+    for (auto marker = next_marker(bytes, offset); marker != end;
+         marker = next_marker(bytes, offset)) {
+        // Segments start with their length, which counts itself.
+        if (marker < 0xC0 || is_restart(marker) || marker == 0xD8)
+            throw FormatError("damaged JPEG (bad marker)");
+        const std::uint64_t length = big_endian_16(bytes, offset);
+        if (length < 2)
+            throw FormatError("damaged JPEG (bad length)");
+        (void)byte_at(bytes, offset + length - 1);
+        if (marker == huffman_tables)
+            check_huffman_tables(bytes.substr(offset + 2, length - 2));
+        offset += length;
+
+        // Coded data follow a scan's header; in them, FF 00 stands for FF, and restarts may occur.
+        if (marker != scan)
+            continue;
+        std::uint64_t behind = offset;
+        for (auto code = next_marker(bytes, behind); code == 0 || is_restart(code);
+             code = next_marker(bytes, behind))
+            offset = behind;
+    }
 }
 
 void check_bmp_complete(std::string_view bytes) {

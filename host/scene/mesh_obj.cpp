@@ -227,10 +227,11 @@ ObjFile read_obj_file(const std::string &path) {
             file.materials.push_back(std::move(material));
     }
 
-    // One part for each material, in the order of their first `usemtl`; unnamed triangles first.
+    // One part for each material, in the order of their first `usemtl`, after the unnamed triangles
+    // (material none = -1, which the unsigned sum below takes to 0).
     std::vector<std::vector<std::uint32_t>> triangles_of(builder.material_names.size() + 1);
     for (std::size_t t = 0; t < builder.triangle_material.size(); ++t)
-        triangles_of[static_cast<std::size_t>(builder.triangle_material[t] + 1)].push_back(
+        triangles_of[static_cast<std::size_t>(builder.triangle_material[t]) + 1].push_back(
             static_cast<std::uint32_t>(t));
     std::vector<std::pair<int, std::uint32_t>> new_index(builder.mesh.positions.size(), {none, 0});
     for (std::size_t m = 0; m < triangles_of.size(); ++m)

@@ -36,10 +36,9 @@ public:
     /// The length of a list whose items are still in the file.
     std::uint64_t list_length(const PlyProperty &list) {
         const double length = number(list.count_type);
-        const auto left = static_cast<std::uint64_t>(end_ - next_) + 1;
         const std::uint64_t item = format_ == PlyFormat::ascii ? 2 : ply_type_size(list.type);
-        if (!(length >= 0) || length != std::floor(length) ||
-            length > static_cast<double>(left / item))
+        const std::uint64_t most = (static_cast<std::uint64_t>(end_ - next_) + 1) / item;
+        if (!(length >= 0) || length != std::floor(length) || length > static_cast<double>(most))
             fail(fmt::format("list of {} items, but the file ends before", length));
         return static_cast<std::uint64_t>(length);
     }
