@@ -1,6 +1,7 @@
 /// Shapes: sphere, rectangle, disk, cube, obj, ply.
 
 #include "cube_mesh.h"
+#include "mesh_normals.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
@@ -28,6 +29,26 @@ bool is_similarity(const glm::dmat3 &m) {
             return false;
     }
     return true;
+}
+
+/// Mitsuba computes the normals of a mesh that states none after `to_world`, where reflections turn
+/// them and stretching weighs the triangles differently. Such a mesh gets its own normals, in
+/// object space, that become those.
+void follow_transform(Shape &shape) {
+    const glm::dmat3 linear(shape.to_world);
+    const Mesh &mesh = *shape.mesh;
+    const bool keeps_normals = is_similarity(linear) && glm::determinant(linear) > 0;
+    if (keeps_normals || mesh.normals.empty() || mesh.normals != smooth_normals(mesh))
+        return;
+
+    auto placed = std::make_shared<Mesh>(mesh);
+    for (glm::dvec3 &position : placed->positions)
+        position = glm::dvec3(shape.to_world * glm::dvec4(position, 1));
+    placed->normals = smooth_normals(*placed);
+    for (glm::vec3 &normal : placed->normals)
+        normal = glm::vec3(glm::normalize(glm::transpose(linear) * glm::dvec3(normal)));
+    placed->positions = mesh.positions;
+    shape.mesh = std::move(placed);
 }
 
 void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
@@ -76,10 +97,6 @@ void SceneReader::read_sphere(Properties &properties, Shape &shape) {
     if (!is_similarity(glm::dmat3(shape.to_world)))
         properties.fail("to_world", "is not a uniform scale with a rotation, expected one: an "
                                     "ellipsoid is not supported");
-
-    // As in Mitsuba, a reflection turns the sphere inside out.
-    if (glm::determinant(glm::dmat3(shape.to_world)) < 0)
-        shape.flip_normals = !shape.flip_normals;
     shape.to_world = glm::scale(glm::translate(shape.to_world, center), glm::dvec3(radius));
 }
 
@@ -99,6 +116,7 @@ void SceneReader::read_mesh_file(Properties &properties, Shape &shape) {
                                                    : read_ply_mesh(path, options, where));
     }
     shape.mesh = mesh;
+    follow_transform(shape);
 }
 
 void SceneReader::read_surface(Properties &properties, Shape &shape) {

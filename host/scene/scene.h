@@ -23,7 +23,9 @@ enum class TextureKind { constant, bitmap, checkerboard };
 enum class TextureFilter { bilinear, nearest };
 enum class TextureWrap { repeat, mirror, clamp };
 
-/// A colour over a surface, looked up at to_uv * (u, v, 1).
+/// A colour over a surface, looked up at to_uv * (u, v, 1). The first (top) row of a bitmap begins
+/// at v = 0, texel (i, j) of w x h has its centre at ((i + .5) / w, (j + .5) / h). A checkerboard
+/// shows color0 where the fractions of u and v lie both above or both below one half, else color1.
 struct Texture {
     TextureKind kind = TextureKind::constant;
     Rgb value{0.5};                      ///< constant
@@ -64,7 +66,11 @@ enum class ShapeKind { sphere, rectangle, disk, mesh };
 /// A shape with its place, surface and light. Geometry, normals and (u, v) are Mitsuba's: the
 /// rectangle is [-1,1]^2 in z = 0 with normal +z and uv in [0,1]^2, the disk is the unit disk in
 /// z = 0, the sphere is |x| = 1 (its reader folds `center` and `radius` into to_world). A cube is
-/// read as a mesh.
+/// read as a mesh. World normals: rectangle, disk and vertex normals go through the inverse
+/// transpose of to_world, also if it mirrors; a mesh without vertex normals takes them from the
+/// order of its transformed vertices (mirrored, it turns inside out); those of a sphere point
+/// outwards, or inwards if to_world mirrors. Then flip_normals turns shading and geometric normals
+/// over. An area light shines, and the front of a BSDF lies, where the shading normal points.
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
     glm::dmat4 to_world{1.0};
@@ -150,7 +156,7 @@ struct Scene {
     Sensor sensor;
     FilmSettings film;
     Integrator integrator;
-    int sample_count = 16;
+    int sample_count = 16; ///< scene files that state none have 4, as in Mitsuba
 };
 
 } // namespace clrender
