@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <climits>
 #include <filesystem>
 #include <istream>
 #include <unordered_map>
@@ -164,7 +165,7 @@ int ObjBuilder::resolve(int index, std::size_t count, const char *what) const {
         return none;
     const auto size = static_cast<std::int64_t>(count);
     const std::int64_t resolved = index > 0 ? index - std::int64_t{1} : size + index;
-    if (resolved < 0 || resolved >= size)
+    if (resolved < 0 || resolved >= std::min<std::int64_t>(size, INT_MAX))
         throw InputError(lines_.where(),
                          fmt::format("{} {} does not exist, expected an index from 1 to {} (the "
                                      "number read so far), or its negative",
@@ -219,7 +220,8 @@ ObjFile read_obj_file(const std::string &path) {
     // A missing material file costs the colours, not the picture.
     ObjFile file;
     for (const auto &[library, where] : builder.libraries) {
-        if (!std::filesystem::is_regular_file(library)) {
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(library, ignored)) {
             log::warn(where, library + " is not a file; its materials are left out");
             continue;
         }

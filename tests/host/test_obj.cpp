@@ -129,7 +129,7 @@ TEST_CASE("an OBJ of a million triangles takes seconds", "[obj]") {
     const Mesh mesh = read_text(text);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     CHECK(mesh.triangles.size() == 2 * cells * cells);
-    CHECK(seconds.count() < 20); // about 1 s without sanitizers
+    CHECK(seconds.count() < 60); // about 1 s on an idle core, without sanitizers
 }
 
 TEST_CASE("a polygon with very many corners is one or an error, at once", "[obj]") {
