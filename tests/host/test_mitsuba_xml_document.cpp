@@ -81,7 +81,7 @@ TEST_CASE("includes share parameters and ids, and look beside themselves first")
           R"(<shape version="3.0.0" type="sphere"><ref id="white"/></shape>)");
     write(folder, "beside_the_scene.xml", whole(R"(<bsdf type="diffuse" id="white"/>)"));
     const std::string path =
-        write(folder, "main.xml", whole(R"(<default name="r" value="3"/><path value="parts"/>
+        folder.file("main.xml", whole(R"(<default name="r" value="3"/><path value="parts"/>
         <include filename="first.xml"/>)"));
     const Scene scene = load(path);
     CHECK(scene.name == "main");
@@ -143,10 +143,9 @@ TEST_CASE("two hundred thousand nested elements are refused") {
 TEST_CASE("byte order marks and any line ends are fine") {
     const ScratchFolder folder;
     const std::string path =
-        write(folder, "scene.xml",
-              "\xEF\xBB\xBF<?xml version=\"1.0\"?>\r\n<!-- a comment\r\n -->\r\n"
-              "<scene version=\"2.1.0\">\r\n" +
-                  sphere("1e-3") + "\r\n" + sphere("zero") + "\r\n</scene>");
+        folder.file("scene.xml", "\xEF\xBB\xBF<?xml version=\"1.0\"?>\r\n<!-- a comment\r\n -->\r\n"
+                                 "<scene version=\"2.1.0\">\r\n" +
+                                     sphere("1e-3") + "\r\n" + sphere("zero") + "\r\n</scene>");
     CHECK_THAT(error_of([&] { load(path); }), Contains(":6: ") && Contains("expected a number"));
 }
 
