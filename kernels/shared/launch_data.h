@@ -42,12 +42,10 @@ typedef struct {
     int crop_x; /* of the crop window within the whole film */
     int crop_y;
     uint seed;
-    uint prim_planar;     /* first planar, ... */
-    uint prim_bvh_sphere; /* ... first sphere in the BVH, ... */
-    uint prim_triangle;   /* ... first triangle */
+    uint prim_bvh_sphere; /* first primitive that is a sphere in the BVH */
     uint total_samples;   /* a pixel, over all launches */
     float filter_radius;  /* pixels */
-    uint pad2[3];
+    uint pad2[7];
 } FrameData;
 CLR_STATIC_SIZE(FrameData, 256);
 

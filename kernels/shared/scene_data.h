@@ -11,7 +11,7 @@ CLR_SHARED_BEGIN
 #define CLR_NONE 0xffffffffu
 
 /* Primitives are numbered through: first the spheres and then the planars that every ray tests,
-   lane-wise; then the spheres in the BVH; then the triangles. */
+   lane-wise; then what lies in the BVH, first the triangles and then its spheres. */
 
 /* A sphere; a negative radius turns its normal inwards. */
 typedef struct {
@@ -146,8 +146,8 @@ typedef struct {
     uint decode;
     float color1[3];
     uint pad;
-} Texture;
-CLR_STATIC_SIZE(Texture, 80);
+} TextureInfo;
+CLR_STATIC_SIZE(TextureInfo, 80);
 
 CLR_SHARED_END
 #endif

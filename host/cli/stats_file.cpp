@@ -1,0 +1,64 @@
+#include "stats_file.h"
+
+#include <algorithm>
+#include <fmt/core.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace clrender::cli {
+
+namespace {
+
+double per_second(double count, double seconds) {
+    return seconds > 0 ? count / seconds : 0;
+}
+
+} // namespace
+
+void write_stats(const std::string &path, const RenderStats &stats, const RunTimes &times) {
+    const nlohmann::ordered_json json = {
+        {"device", stats.device},
+        {"lanes", stats.lanes},
+        {"width", stats.width},
+        {"height", stats.height},
+        {"spp", stats.spp},
+        {"paths", stats.paths},
+        {"rays", stats.rays},
+        {"paths_per_second", per_second(stats.paths, stats.seconds_render)},
+        {"rays_per_second", per_second(stats.rays, stats.seconds_render)},
+        {"seconds",
+         {{"parse", times.parse},
+          {"build", stats.seconds_build},
+          {"compile", stats.seconds_compile},
+          {"upload", stats.seconds_upload},
+          {"render", stats.seconds_render},
+          {"write", times.write},
+          {"total", times.total}}},
+        {"kernel",
+         {{"features", stats.kernel_features}, {"cache", stats.kernel_cached ? "hit" : "miss"}}},
+        {"memory", {{"host_bytes", stats.host_bytes}, {"device_bytes", stats.device_bytes}}},
+        {"triangles", stats.triangles},
+        {"nonfinite_samples", stats.nonfinite_samples},
+    };
+    std::ofstream file(path);
+    file << json.dump(2) << '\n';
+    file.close();
+    if (!file)
+        throw InputError({path, 0}, "the statistics cannot be written");
+}
+
+std::string summary(const RenderResult &result, const RunTimes &times,
+                    const std::vector<std::string> &outputs) {
+    const RenderStats &s = result.stats;
+    std::string files;
+    for (const std::string &path : outputs)
+        files += (files.empty() ? "" : ", ") + path;
+    return fmt::format(
+        "{}{}: {}x{}, {:.4g} samples a pixel, {:.2f} s ({:.2f} Mpaths/s on {}, {} "
+        "lanes; {:.2f} s in all)",
+        result.interrupted ? "interrupted; the picture so far is in " : "wrote ", files, s.width,
+        s.height, s.paths / (static_cast<double>(s.width) * s.height), s.seconds_render,
+        per_second(s.paths, s.seconds_render) * 1e-6, s.device, s.lanes, times.total);
+}
+
+} // namespace clrender::cli

@@ -1,0 +1,88 @@
+#include "device_scene.h"
+
+#include <algorithm>
+#include <fmt/core.h>
+
+namespace clrender {
+
+namespace {
+
+/// The bytes of one array, in the order of the kernel's arguments.
+struct View {
+    const void *data;
+    std::size_t bytes;
+};
+
+template <typename T> View view(const std::vector<T> &array) {
+    return {array.data(), array.size() * sizeof(T)};
+}
+
+std::vector<View> views(const FlatScene &flat) {
+    return {{&flat.frame, sizeof(flat.frame)},
+            view(flat.spheres),
+            view(flat.planars),
+            view(flat.bvh.nodes),
+            view(flat.bvh.triangle_blocks),
+            view(flat.bvh.sphere_blocks),
+            view(flat.triangles),
+            view(flat.normals),
+            view(flat.uvs),
+            view(flat.shape_of),
+            view(flat.shapes),
+            view(flat.shape_frames),
+            view(flat.materials),
+            view(flat.emitters),
+            view(flat.lights),
+            view(flat.light_triangles),
+            view(flat.light_alias),
+            view(flat.textures),
+            view(flat.texels_u8),
+            view(flat.texels_f32),
+            view(flat.decode),
+            view(flat.env_texels),
+            view(flat.env_alias),
+            view(flat.env_density),
+            view(flat.filter)};
+}
+
+void check_memory(const DeviceEntry &entry, const std::vector<View> &arrays,
+                  std::size_t film_bytes) {
+    std::size_t total = film_bytes;
+    std::size_t largest = film_bytes;
+    for (const View &array : arrays) {
+        total += array.bytes;
+        largest = std::max(largest, array.bytes);
+    }
+    if (total > entry.memory_bytes)
+        throw DeviceError(fmt::format("the scene and the film need {} bytes, but {} has {}", total,
+                                      entry.name, entry.memory_bytes));
+    if (largest > entry.max_allocation_bytes)
+        throw DeviceError(fmt::format("one array of {} bytes is needed, but {} allows {}", largest,
+                                      entry.name, entry.max_allocation_bytes));
+}
+
+} // namespace
+
+DeviceScene::DeviceScene(const cl::Context &context, const cl::CommandQueue &queue,
+                         const DeviceEntry &entry, const FlatScene &flat, std::size_t film_bytes) {
+    const std::vector<View> arrays = views(flat);
+    check_memory(entry, arrays, film_bytes);
+    with_device("uploading the scene", [&] {
+        for (const View &array : arrays) {
+            constexpr std::size_t least = 256;
+            buffers_.emplace_back(context, CL_MEM_READ_ONLY, std::max(array.bytes, least));
+            if (array.bytes > 0)
+                queue.enqueueWriteBuffer(buffers_.back(), CL_TRUE, 0, array.bytes, array.data);
+            bytes_ += array.bytes;
+        }
+    });
+}
+
+cl_uint DeviceScene::bind(cl::Kernel &kernel) const {
+    cl_uint index = 0;
+    for (const cl::Buffer &buffer : buffers_)
+        kernel.setArg(index++, buffer);
+    return index;
+}
+
+} // namespace clrender

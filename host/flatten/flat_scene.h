@@ -1,0 +1,71 @@
+#pragma once
+/// The scene as the device gets it: float32 arrays of shared structs, the acceleration structure,
+/// the light tables, and what of it all the kernel has to know.
+
+#include "bvh_builder.h"
+#include "device/kernel_config.h"
+#include "scene/scene.h"
+#include "shared/launch_data.h"
+#include "shared/scene_data.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace clrender {
+
+/// From scene coordinates to the renderer's: p' = (p - center) * scale, scale a power of two, so
+/// that the scene lies within a few units of the origin.
+struct Placement {
+    glm::dvec3 center{0.0};
+    double scale = 1;
+
+    [[nodiscard]] glm::vec3 apply(const glm::dvec3 &p) const {
+        return glm::vec3((p - center) * scale);
+    }
+};
+
+/// Names follow the kernel's arguments (kernels/scene.clh says what each array holds).
+struct FlatScene {
+    FrameData frame{};
+    Placement placement;
+    std::vector<Sphere> spheres;
+    std::vector<Planar> planars;
+    Bvh bvh;
+    std::vector<uint> triangles;
+    std::vector<float> normals;
+    std::vector<float> uvs;
+    std::vector<uint> shape_of;
+    std::vector<ShapeInfo> shapes;
+    std::vector<float> shape_frames;
+    std::vector<Material> materials;
+    std::vector<EmitterInfo> emitters;
+    std::vector<Light> lights;
+    std::vector<LightTriangle> light_triangles;
+    std::vector<AliasEntry> light_alias;
+    std::vector<TextureInfo> textures;
+    std::vector<uint> texels_u8;
+    std::vector<float> texels_f32;
+    std::vector<float> decode;
+    std::vector<float> env_texels;
+    std::vector<AliasEntry> env_alias;
+    std::vector<float> env_density;
+    std::vector<float> filter;
+    /// All but LANES and ITEM_PIXELS, which the device decides.
+    KernelConfig config;
+    std::size_t triangle_count = 0;
+
+    [[nodiscard]] std::size_t bytes() const;
+};
+
+/// What the command line says of the picture.
+struct FlattenOptions {
+    bool brute_force = false;   ///< --accel none
+    bool pixel_centers = false; ///< all samples at pixel centres
+    int strategy = 0;           ///< as STRATEGY in kernel_config.def
+};
+
+/// Flattens a parsed scene. Warns of degenerate triangles and of scenes without light.
+FlatScene flatten(const Scene &scene, const FlattenOptions &options = {});
+
+} // namespace clrender

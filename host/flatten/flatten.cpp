@@ -1,0 +1,31 @@
+#include "flatten_parts.h"
+
+namespace clrender {
+
+std::size_t FlatScene::bytes() const {
+    const auto size = [](const auto &...arrays) {
+        return ((arrays.size() * sizeof(*arrays.data())) + ...);
+    };
+    return sizeof(frame) + size(spheres, planars, bvh.nodes, bvh.triangle_blocks, bvh.sphere_blocks,
+                                triangles, normals, uvs, shape_of, shapes, shape_frames, materials,
+                                emitters, lights, light_triangles, light_alias, textures, texels_u8,
+                                texels_f32, decode, env_texels, env_alias, env_density, filter);
+}
+
+FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
+    Flattening work{scene, options};
+    work.flat.placement = choose_placement(scene);
+    flatten_materials(work);
+    // Textured lights need surface coordinates too, which the shapes have to know.
+    for (const Emitter &emitter : scene.emitters)
+        if (emitter.kind == EmitterKind::area) {
+            float ignored[3];
+            flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
+        }
+    flatten_shapes(work);
+    flatten_lights(work);
+    flatten_camera(work);
+    return std::move(work.flat);
+}
+
+} // namespace clrender

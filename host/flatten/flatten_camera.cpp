@@ -1,0 +1,123 @@
+#include "film_filter.h"
+#include "flatten_parts.h"
+#include "shared/film_filter.h"
+
+#include <climits>
+#include <cmath>
+#include <limits>
+
+namespace clrender {
+
+namespace {
+
+/// Mitsuba's `depth` measures from the near plane, stated or not.
+constexpr double depth_near_clip = 0.01;
+
+void store(float (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<float>(v.x);
+    out[1] = static_cast<float>(v.y);
+    out[2] = static_cast<float>(v.z);
+}
+
+/// Half the extent of the image plane at distance 1, along x and y.
+glm::dvec2 image_plane_half_size(const Sensor &sensor, const FilmSettings &film) {
+    const double width = film.width;
+    const double height = film.height;
+    const double aspect = width / height;
+    const double tangent = std::tan(glm::radians(sensor.fov) / 2);
+    FovAxis axis = sensor.fov_axis;
+    if (axis == FovAxis::smaller)
+        axis = width > height ? FovAxis::y : FovAxis::x;
+    else if (axis == FovAxis::larger)
+        axis = width > height ? FovAxis::x : FovAxis::y;
+
+    double half_x = tangent;
+    if (axis == FovAxis::y)
+        half_x = tangent * aspect;
+    else if (axis == FovAxis::diagonal)
+        half_x = tangent * aspect / std::sqrt(1 + aspect * aspect);
+    return {half_x, half_x / aspect};
+}
+
+void flatten_film(Flattening &work) {
+    FlatScene &flat = work.flat;
+    const FilmSettings &film = work.scene.film;
+    FrameData &f = flat.frame;
+    f.width = static_cast<uint>(film.crop_width);
+    f.height = static_cast<uint>(film.crop_height);
+    f.crop_x = film.crop_x;
+    f.crop_y = film.crop_y;
+    f.filter_radius = static_cast<float>(filter_radius(film.filter));
+    if (work.options.pixel_centers)
+        flat.config.FILTER = 2;
+    else if (film.filter.kind != FilterKind::box) {
+        flat.config.FILTER = 1;
+        flat.filter = tabulate_filter(film.filter);
+    }
+}
+
+void flatten_integrator(Flattening &work) {
+    FlatScene &flat = work.flat;
+    const Integrator &integrator = work.scene.integrator;
+    FrameData &f = flat.frame;
+    f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
+    f.rr_depth = integrator.rr_depth;
+    flat.config.STRATEGY = work.options.strategy;
+    flat.config.HIDE_EMITTERS = integrator.hide_emitters ? 1 : 0;
+    if (integrator.kind == IntegratorKind::direct) {
+        f.max_depth = 2;
+        f.rr_depth = INT_MAX;
+        if (integrator.bsdf_samples == 0)
+            flat.config.STRATEGY = 1;
+        else if (integrator.emitter_samples == 0)
+            flat.config.STRATEGY = 2;
+    }
+    flat.config.INTEGRATOR = integrator.kind == IntegratorKind::depth ? 1 : 0;
+    flat.config.HAS_ROULETTE =
+        integrator.kind != IntegratorKind::depth && f.rr_depth < f.max_depth ? 1 : 0;
+}
+
+} // namespace
+
+void flatten_camera(Flattening &work) {
+    const Scene &scene = work.scene;
+    FlatScene &flat = work.flat;
+    const Sensor &sensor = scene.sensor;
+    FrameData &f = flat.frame;
+    flatten_film(work);
+    flatten_integrator(work);
+
+    // The axes as unit vectors: a scale in the camera's matrix moves nothing but the clip planes.
+    const glm::dvec3 right = -glm::normalize(glm::dvec3(sensor.to_world[0]));
+    const glm::dvec3 up = glm::normalize(glm::dvec3(sensor.to_world[1]));
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(sensor.to_world[2]));
+    store(f.origin, glm::dvec3(flat.placement.apply(glm::dvec3(sensor.to_world[3]))));
+    store(f.axis, axis);
+    store(f.lens_x, right);
+    store(f.lens_y, up);
+
+    // Film position (x, y) in pixels looks along corner + x step_x + y step_y.
+    const glm::dvec2 half = image_plane_half_size(sensor, scene.film);
+    const glm::dvec3 step_x = right * (2 * half.x / scene.film.width);
+    const glm::dvec3 step_y = -up * (2 * half.y / scene.film.height);
+    const glm::dvec2 middle = {scene.film.width * (0.5 - sensor.principal_point_offset.x),
+                               scene.film.height * (0.5 - sensor.principal_point_offset.y)};
+    store(f.step_x, step_x);
+    store(f.step_y, step_y);
+    store(f.corner, axis - step_x * middle.x - step_y * middle.y);
+
+    const double unit = flat.placement.scale;
+    f.length_unit = static_cast<float>(1 / unit);
+    const bool depth = scene.integrator.kind == IntegratorKind::depth;
+    f.near_clip = static_cast<float>(unit * sensor.near_clip.value_or(depth ? depth_near_clip : 0));
+    f.far_clip = static_cast<float>(
+        unit * sensor.far_clip.value_or(std::numeric_limits<double>::infinity()));
+    flat.config.HAS_CLIP = sensor.near_clip || sensor.far_clip ? 1 : 0;
+    if (sensor.kind == SensorKind::thinlens) {
+        flat.config.HAS_LENS = sensor.aperture_radius > 0 ? 1 : 0;
+        f.aperture_radius = static_cast<float>(unit * sensor.aperture_radius);
+        f.focus_distance = static_cast<float>(unit * sensor.focus_distance);
+    }
+}
+
+} // namespace clrender

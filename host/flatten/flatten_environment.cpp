@@ -1,0 +1,100 @@
+#include "alias_table.h"
+#include "flatten_parts.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace clrender {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Linear radiance of pixel `at`, grey images giving the same for all channels.
+Rgb radiance_of(const Emitter &emitter, std::size_t at) {
+    const Image &image = *emitter.bitmap;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    Rgb c;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = at * channels + (channels >= 3 ? k : 0);
+        double value = 0;
+        if (image.type == PixelType::f32)
+            value = image.f32[i];
+        else
+            value = emitter.raw ? image.u8[i] / 255.0 : srgb_decode(image.u8[i] / 255.0);
+        c[static_cast<int>(k)] = value * emitter.scale;
+    }
+    return c;
+}
+
+/// Solid angle of the cells between rows j and j + 1 of `rows` + 1, each of `width` in the row.
+double cell_solid_angle(std::size_t j, std::size_t rows, std::size_t width) {
+    const double top = std::cos(pi * static_cast<double>(j) / static_cast<double>(rows));
+    const double bottom = std::cos(pi * static_cast<double>(j + 1) / static_cast<double>(rows));
+    return (top - bottom) * 2 * pi / static_cast<double>(width);
+}
+
+/// The table over the cells between four texels each, by mean luminance times solid angle; returns
+/// the integral of luminance over all directions.
+double build_cells(std::size_t width, std::size_t height, FlatScene &flat) {
+    const std::size_t rows = height - 1;
+    const auto luminance_at = [&](std::size_t row, std::size_t column) {
+        const float *c = &flat.env_texels[3 * (row * width + column % width)];
+        return luminance({c[0], c[1], c[2]});
+    };
+    std::vector<double> weight(width * rows);
+    double total = 0;
+    for (std::size_t j = 0; j < rows; ++j)
+        for (std::size_t i = 0; i < width; ++i) {
+            const double mean = (luminance_at(j, i) + luminance_at(j, i + 1) +
+                                 luminance_at(j + 1, i) + luminance_at(j + 1, i + 1)) /
+                                4;
+            weight[j * width + i] = mean * cell_solid_angle(j, rows, width);
+            total += weight[j * width + i];
+        }
+    if (!(total > 0))
+        return 0;
+    flat.env_alias = build_alias_table(weight);
+    flat.env_density.resize(weight.size());
+    const double cells = static_cast<double>(weight.size());
+    for (std::size_t i = 0; i < weight.size(); ++i)
+        flat.env_density[i] = static_cast<float>(weight[i] / total * cells);
+    return total;
+}
+
+} // namespace
+
+void flatten_environment(Flattening &work, const Emitter &emitter, double *power) {
+    FlatScene &flat = work.flat;
+    FrameData &f = flat.frame;
+    if (emitter.kind == EmitterKind::constant) {
+        const Rgb radiance = work.scene.textures[static_cast<std::size_t>(emitter.radiance)].value;
+        for (int c = 0; c < 3; ++c)
+            f.env_radiance[c] = static_cast<float>(radiance[c]);
+        flat.config.ENVIRONMENT = 1;
+        return;
+    }
+
+    const auto width = static_cast<std::size_t>(emitter.bitmap->width);
+    const auto height = static_cast<std::size_t>(emitter.bitmap->height);
+    flat.env_texels.reserve(3 * width * height);
+    for (std::size_t i = 0; i < width * height; ++i) {
+        const Rgb c = radiance_of(emitter, i);
+        for (int k = 0; k < 3; ++k)
+            flat.env_texels.push_back(static_cast<float>(c[k]));
+    }
+    f.env_width = static_cast<uint>(width);
+    f.env_height = static_cast<uint>(height);
+    const glm::dmat3 to_map = glm::inverse(glm::dmat3(emitter.to_world));
+    for (int row = 0; row < 3; ++row) {
+        const glm::dvec3 axis =
+            glm::normalize(glm::dvec3(to_map[0][row], to_map[1][row], to_map[2][row]));
+        for (int column = 0; column < 3; ++column)
+            f.env_rotation[4 * row + column] = static_cast<float>(axis[column]);
+    }
+    *power = build_cells(width, height, flat);
+    // A map that is black all over adds nothing.
+    flat.config.ENVIRONMENT = *power > 0 ? 2 : 1;
+}
+
+} // namespace clrender

@@ -1,0 +1,54 @@
+#pragma once
+/// The steps of flatten(), in their order, and what they tell each other.
+
+#include "flat_scene.h"
+
+#include <map>
+
+namespace clrender {
+
+/// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
+using TriangleCorners = std::array<glm::vec3, 3>;
+
+/// A flat scene in the making: how the scene's numbers map to the flat one's.
+struct Flattening {
+    const Scene &scene;
+    const FlattenOptions &options;
+    FlatScene flat{};
+    std::map<int, uint> texture_index{};      ///< by Scene::textures
+    std::map<int, uint> material_index{};     ///< by Scene::bsdfs, not twosided
+    std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
+    std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
+    std::map<int, std::size_t> first_triangle_of_shape{}; ///< by Scene::shapes, meshes
+    std::vector<TriangleCorners> corners{};
+    std::size_t vertex_count = 0;
+};
+
+/// Where the scene is put, so that what the camera is near to lies within a unit of the origin.
+Placement choose_placement(const Scene &scene);
+
+/// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
+void flatten_materials(Flattening &work);
+
+/// Index of a texture in the flat scene; CLR_NONE for a constant one and for none, whose colour
+/// (`absent` for none) goes to constant[0..2].
+uint flatten_texture(Flattening &work, int texture, Rgb absent, float *constant);
+
+/// Spheres, planars, meshes and the BVH; shape infos name emitters by Scene's index.
+void flatten_shapes(Flattening &work);
+
+/// The lights to sample, the emitters to meet.
+void flatten_lights(Flattening &work);
+
+/// The environment: a constant one, or a map with its table; returns its light, of which only the
+/// probability is left to fill, if it is to be sampled. `power` becomes the integral of its
+/// luminance over all directions.
+void flatten_environment(Flattening &work, const Emitter &emitter, double *power);
+
+/// Camera, film and the bounds of the bounce loop.
+void flatten_camera(Flattening &work);
+
+/// Relative luminance of linear sRGB (Rec. 709).
+double luminance(const Rgb &c);
+
+} // namespace clrender

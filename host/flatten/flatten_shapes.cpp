@@ -1,0 +1,234 @@
+#include "flatten_parts.h"
+#include "log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+#include <limits>
+
+namespace clrender {
+
+namespace {
+
+/// As many spheres, and as many rectangles and disks, are tested by every ray; more go into the
+/// BVH.
+constexpr std::ptrdiff_t few_primitives = 16;
+
+constexpr float missing = std::numeric_limits<float>::quiet_NaN();
+
+void store(float (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<float>(v.x);
+    out[1] = static_cast<float>(v.y);
+    out[2] = static_cast<float>(v.z);
+}
+
+double sphere_radius(const Shape &shape) {
+    return std::cbrt(std::abs(glm::determinant(glm::dmat3(shape.to_world))));
+}
+
+/// True where the normal points the other way than the shape's own.
+bool is_inverted(const Shape &shape) {
+    const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
+    return shape.flip_normals != mirrored;
+}
+
+glm::dvec3 transformed_normal(const Shape &shape, const glm::dvec3 &n) {
+    const glm::dmat3 inverse_transpose = glm::transpose(glm::inverse(glm::dmat3(shape.to_world)));
+    return glm::normalize(inverse_transpose * n);
+}
+
+/// The shape's entry among the shape infos, with the frame that spheres need for their (u, v).
+uint append_shape(const Shape &shape, Flattening &work) {
+    FlatScene &flat = work.flat;
+    flat.shapes.push_back({work.sides_of_bsdf.at(shape.bsdf),
+                           shape.emitter == none ? CLR_NONE : static_cast<uint>(shape.emitter)});
+    if (flat.config.HAS_UVS != 0) {
+        glm::dmat3 to_local{1.0};
+        if (shape.kind == ShapeKind::sphere)
+            to_local = glm::inverse(glm::dmat3(shape.to_world)) * sphere_radius(shape);
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                flat.shape_frames.push_back(static_cast<float>(to_local[column][row]));
+    }
+    return static_cast<uint>(flat.shapes.size() - 1);
+}
+
+Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
+    Sphere s{};
+    store(s.center, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
+    const double radius = sphere_radius(shape) * placement.scale;
+    s.radius = static_cast<float>(is_inverted(shape) ? -radius : radius);
+    return s;
+}
+
+Planar flatten_planar(const Shape &shape, const Placement &placement) {
+    Planar p{};
+    const double scale = placement.scale;
+    const glm::dvec3 du = glm::dvec3(shape.to_world[0]) * scale;
+    const glm::dvec3 dv = glm::dvec3(shape.to_world[1]) * scale;
+    const glm::dvec3 across = glm::cross(du, dv);
+    glm::dvec3 normal = transformed_normal(shape, {0, 0, 1});
+    if (shape.flip_normals)
+        normal = -normal;
+    p.is_disk = shape.kind == ShapeKind::disk ? 1 : 0;
+    p.area = static_cast<float>(glm::length(across) * (p.is_disk != 0 ? M_PI : 4));
+    store(p.origin, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
+    store(p.normal, normal);
+    store(p.du, du);
+    store(p.dv, dv);
+    // The dual basis within the plane.
+    const double area2 = glm::dot(across, across);
+    store(p.ra, glm::cross(dv, across) / area2);
+    store(p.rb, glm::cross(across, du) / area2);
+    return p;
+}
+
+/// The rectangle as two triangles, for scenes with many.
+Mesh rectangle_mesh(bool mirrored) {
+    Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    if (mirrored)
+        mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
+    else
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// What all meshes of the scene have, so that the arrays by vertex are there if any needs them.
+struct VertexData {
+    bool normals = false;
+    bool uvs = false;
+};
+
+/// Appends a mesh's triangles to the corners, its vertex data and shape numbers to the flat scene.
+void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flattening &work) {
+    FlatScene &flat = work.flat;
+    const uint shape_number = append_shape(shape, work);
+    std::vector<glm::vec3> positions(mesh.positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        positions[i] =
+            flat.placement.apply(glm::dvec3(shape.to_world * glm::dvec4(mesh.positions[i], 1)));
+
+    // A flipped mesh has its triangles wound the other way round.
+    const std::size_t second = shape.flip_normals ? 2 : 1;
+    const std::size_t third = shape.flip_normals ? 1 : 2;
+    const auto first_vertex = static_cast<uint>(work.vertex_count);
+    for (const auto &t : mesh.triangles) {
+        work.corners.push_back({positions[t[0]], positions[t[second]], positions[t[third]]});
+        flat.shape_of.push_back(shape_number);
+        if (wanted.normals || wanted.uvs)
+            for (const std::size_t corner : {std::size_t{0}, second, third})
+                flat.triangles.push_back(first_vertex + t[corner]);
+    }
+    if (wanted.normals) {
+        const glm::dmat3 inverse_transpose =
+            glm::transpose(glm::inverse(glm::dmat3(shape.to_world)));
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            glm::vec3 n{missing};
+            if (!mesh.normals.empty())
+                n = glm::vec3(glm::normalize(inverse_transpose * glm::dvec3(mesh.normals[i]))) *
+                    (shape.flip_normals ? -1.0f : 1.0f);
+            flat.normals.insert(flat.normals.end(), {n.x, n.y, n.z});
+        }
+    }
+    if (wanted.uvs)
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(missing) : mesh.uvs[i];
+            flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
+        }
+    work.vertex_count += positions.size();
+}
+
+void flatten_spheres(Flattening &work, bool in_bvh, std::vector<BvhSphere> &bvh_spheres) {
+    FlatScene &flat = work.flat;
+    for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
+        const Shape &shape = work.scene.shapes[i];
+        if (shape.kind != ShapeKind::sphere)
+            continue;
+        const uint shape_number = append_shape(shape, work);
+        const Sphere s = flatten_sphere(shape, flat.placement);
+        flat.spheres.push_back(s);
+        uint primitive = shape_number;
+        if (in_bvh) {
+            const auto id = static_cast<uint>(flat.shape_of.size());
+            flat.shape_of.push_back(shape_number);
+            bvh_spheres.push_back(
+                {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
+            primitive = static_cast<uint>(flat.planars.size()) + id;
+        }
+        work.primitive_of_shape[static_cast<int>(i)] = primitive;
+    }
+}
+
+void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
+    FlatScene &flat = work.flat;
+    for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
+        const Shape &shape = work.scene.shapes[i];
+        const bool lane_wise = shape.kind == ShapeKind::disk ||
+                               (shape.kind == ShapeKind::rectangle && !rectangles_in_bvh);
+        if (!lane_wise)
+            continue;
+        work.primitive_of_shape[static_cast<int>(i)] = append_shape(shape, work);
+        flat.planars.push_back(flatten_planar(shape, flat.placement));
+        if (shape.kind == ShapeKind::disk)
+            flat.config.HAS_DISKS = 1;
+    }
+    flat.config.PLANAR_COUNT = static_cast<int>(flat.planars.size());
+}
+
+void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
+    FlatScene &flat = work.flat;
+    VertexData wanted;
+    wanted.uvs = flat.config.HAS_UVS != 0;
+    for (const Shape &shape : work.scene.shapes)
+        wanted.normals |= shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
+    for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
+        const Shape &shape = work.scene.shapes[i];
+        const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
+        work.first_triangle_of_shape[static_cast<int>(i)] = work.corners.size();
+        if (shape.kind == ShapeKind::mesh)
+            append_mesh(shape, *shape.mesh, wanted, work);
+        else if (shape.kind == ShapeKind::rectangle && rectangles_in_bvh)
+            append_mesh(shape, rectangle_mesh(mirrored), wanted, work);
+    }
+    flat.triangle_count = work.corners.size();
+    flat.config.HAS_TRIANGLES = work.corners.empty() ? 0 : 1;
+    flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
+}
+
+} // namespace
+
+void flatten_shapes(Flattening &work) {
+    FlatScene &flat = work.flat;
+    const auto count = [&](auto... kinds) {
+        return std::count_if(work.scene.shapes.begin(), work.scene.shapes.end(),
+                             [=](const Shape &s) { return ((s.kind == kinds) || ...); });
+    };
+    const bool spheres_in_bvh = count(ShapeKind::sphere) > few_primitives;
+    const bool rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) > few_primitives;
+
+    // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles, and
+    // spheres that are too many to test one by one.
+    std::vector<BvhSphere> bvh_spheres;
+    if (!spheres_in_bvh)
+        flatten_spheres(work, false, bvh_spheres);
+    flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
+    flatten_planars(work, rectangles_in_bvh);
+    flatten_meshes(work, rectangles_in_bvh);
+    flat.frame.prim_bvh_sphere =
+        static_cast<uint>(flat.spheres.size() + flat.planars.size() + work.corners.size());
+    if (spheres_in_bvh)
+        flatten_spheres(work, true, bvh_spheres);
+
+    flat.config.HAS_BVH_SPHERES = bvh_spheres.empty() ? 0 : 1;
+    if (work.corners.empty() && bvh_spheres.empty())
+        return;
+    flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
+    flat.bvh = build_bvh(work.corners, bvh_spheres);
+    if (flat.bvh.degenerate > 0)
+        log::warn(
+            fmt::format("{} triangles or spheres without area are left out", flat.bvh.degenerate));
+}
+
+} // namespace clrender

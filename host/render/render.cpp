@@ -1,0 +1,258 @@
+#include "render.h"
+
+#include "device/cl_context.h"
+#include "device/device_scene.h"
+#include "device/kernel_program.h"
+#include "film/film.h"
+#include "flatten/flat_scene.h"
+#include "launch_plan.h"
+#include "log.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <fmt/core.h>
+#include <memory>
+
+namespace clrender {
+
+namespace {
+
+/// Neighbouring pixels of a work-item: enough paths to keep the lanes of a CPU full, one on a GPU.
+constexpr int cpu_item_pixels = 16;
+
+/// Work-items of a work-group, fixed: PoCL compiles anew for each size.
+constexpr std::size_t cpu_group = 1;
+constexpr std::size_t gpu_group = 64;
+
+class Stopwatch {
+public:
+    /// Seconds since the last call, or since it was made.
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+        return seconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::size_t round_up(std::size_t value, std::size_t unit) {
+    return (value + unit - 1) / unit * unit;
+}
+
+/// One render: the device's side of the film and the launches that fill it.
+class PathTracer {
+public:
+    PathTracer(const DeviceEntry &entry, const FlatScene &flat, const RenderOptions &options)
+        : entry_(entry), flat_(flat), options_(options),
+          pixels_(static_cast<std::size_t>(flat.frame.width) * flat.frame.height),
+          item_pixels_(static_cast<std::size_t>(flat.config.ITEM_PIXELS)),
+          items_((pixels_ + item_pixels_ - 1) / item_pixels_),
+          group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group) {
+        with_device("opening the device", [&] {
+            context_ = cl::Context(entry.device);
+            queue_ = cl::CommandQueue(context_, entry.device);
+        });
+    }
+
+    void compile(RenderStats &stats);
+    void upload(RenderStats &stats);
+    /// True if it was stopped.
+    bool render(int spp, RenderStats &stats);
+    void read(RenderResult &result, PixelFormat format);
+
+private:
+    struct Pending {
+        LaunchPlan::Launch launch;
+        cl::Event event;
+        std::chrono::steady_clock::time_point start;
+    };
+
+    void enqueue(const LaunchPlan::Launch &launch, cl::Event *event);
+    void finish(Pending &pending, LaunchPlan &plan, int spp);
+
+    const DeviceEntry &entry_;
+    const FlatScene &flat_;
+    const RenderOptions &options_;
+    std::size_t pixels_, item_pixels_, items_, group_;
+    cl::Context context_;
+    cl::CommandQueue queue_;
+    cl::Kernel kernel_;
+    cl_uint launch_arguments_ = 0;
+    std::unique_ptr<DeviceScene> scene_;
+    cl::Buffer film_, counters_;
+    std::vector<int> item_samples_;
+    double paths_done_ = 0;
+    std::chrono::steady_clock::time_point last_finish_{};
+};
+
+void PathTracer::compile(RenderStats &stats) {
+    const std::vector<KernelSource> sources = options_.kernel_dir.empty()
+                                                  ? embedded_kernel_sources()
+                                                  : read_kernel_sources(options_.kernel_dir);
+    const std::string build_options = flat_.config.build_options();
+    stats.kernel_features = flat_.config.describe();
+    stats.kernel_cached = was_compiled_before(entry_, sources, build_options);
+    log::detail("kernel: " + stats.kernel_features);
+    const cl::Program program =
+        compile_program(context_, entry_.device, sources, "path_trace.cl", build_options);
+    kernel_ = with_device("creating the kernel", [&] { return cl::Kernel(program, "path_trace"); });
+}
+
+void PathTracer::upload(RenderStats &stats) {
+    const std::size_t film_bytes = pixels_ * sizeof(FilmPixel);
+    const std::size_t counter_bytes = items_ * sizeof(ItemCounters);
+    scene_ =
+        std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, film_bytes + counter_bytes);
+    with_device("clearing the film", [&] {
+        film_ = cl::Buffer(context_, CL_MEM_READ_WRITE, film_bytes);
+        counters_ = cl::Buffer(context_, CL_MEM_READ_WRITE, counter_bytes);
+        queue_.enqueueFillBuffer(film_, cl_uint{0}, 0, film_bytes);
+        queue_.enqueueFillBuffer(counters_, cl_uint{0}, 0, counter_bytes);
+        launch_arguments_ = scene_->bind(kernel_);
+        kernel_.setArg(launch_arguments_++, film_);
+        kernel_.setArg(launch_arguments_++, counters_);
+        queue_.finish();
+    });
+    stats.device_bytes = scene_->bytes() + film_bytes + counter_bytes;
+    item_samples_.assign(items_, 0);
+}
+
+void PathTracer::enqueue(const LaunchPlan::Launch &launch, cl::Event *event) {
+    with_device("launching the kernel", [&] {
+        cl_uint argument = launch_arguments_;
+        kernel_.setArg(argument++, static_cast<cl_uint>(launch.first_item));
+        kernel_.setArg(argument++, static_cast<cl_uint>(launch.item_count));
+        kernel_.setArg(argument++, static_cast<cl_uint>(launch.first_block));
+        kernel_.setArg(argument++, static_cast<cl_uint>(launch.end_block));
+        queue_.enqueueNDRangeKernel(
+            kernel_, cl::NullRange,
+            cl::NDRange(round_up(std::max<std::size_t>(launch.item_count, 1), group_)),
+            cl::NDRange(group_), nullptr, event);
+        queue_.flush();
+    });
+}
+
+void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
+    with_device("running the kernel", [&] { pending.event.wait(); });
+    const auto now = std::chrono::steady_clock::now();
+    // Two launches are under way at a time: this one began when the one before it ended.
+    const auto start = std::max(pending.start, last_finish_);
+    plan.learn(pending.launch, std::chrono::duration<double>(now - start).count());
+    last_finish_ = now;
+
+    const int samples = std::min(pending.launch.end_block * CLR_BLOCK_SAMPLES, spp);
+    const std::size_t end = pending.launch.first_item + pending.launch.item_count;
+    for (std::size_t item = pending.launch.first_item; item < end; ++item) {
+        const std::size_t own = std::min(item_pixels_, pixels_ - item * item_pixels_);
+        paths_done_ += static_cast<double>(own) * (samples - item_samples_[item]);
+        item_samples_[item] = samples;
+    }
+    if (options_.on_progress)
+        options_.on_progress(paths_done_);
+}
+
+bool PathTracer::render(int spp, RenderStats &stats) {
+    Stopwatch watch;
+    // PoCL compiles at the first launch; a launch without work makes that a part of compiling.
+    cl::Event event;
+    enqueue({0, 0, 0, 0}, &event);
+    with_device("compiling the kernel", [&] { event.wait(); });
+    stats.seconds_compile += watch.lap();
+
+    const int blocks = (spp + CLR_BLOCK_SAMPLES - 1) / CLR_BLOCK_SAMPLES;
+    const std::size_t least_items =
+        round_up(static_cast<std::size_t>(entry_.compute_units) * 4, group_);
+    LaunchPlan plan(items_, blocks, static_cast<std::size_t>(options_.tile), options_.batch,
+                    least_items);
+    std::deque<Pending> pending;
+    bool stopped = false;
+    while (!pending.empty() || (!plan.done() && !stopped)) {
+        // The next launch waits in the queue while the one before it runs.
+        while (pending.size() < 2 && !plan.done() && !stopped) {
+            Pending next{plan.next(), {}, std::chrono::steady_clock::now()};
+            enqueue(next.launch, &next.event);
+            pending.push_back(next);
+        }
+        finish(pending.front(), plan, spp);
+        pending.pop_front();
+        stopped = stopped || (options_.should_stop && options_.should_stop());
+    }
+    stats.seconds_render = watch.lap();
+    return stopped && !plan.done();
+}
+
+void PathTracer::read(RenderResult &result, PixelFormat format) {
+    std::vector<FilmPixel> film(pixels_);
+    std::vector<ItemCounters> counters(items_);
+    with_device("reading the film", [&] {
+        queue_.enqueueReadBuffer(film_, CL_TRUE, 0, pixels_ * sizeof(FilmPixel), film.data());
+        queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, items_ * sizeof(ItemCounters),
+                                 counters.data());
+    });
+    std::vector<int> samples(pixels_);
+    for (std::size_t i = 0; i < pixels_; ++i)
+        samples[i] = item_samples_[i / item_pixels_];
+    const auto width = static_cast<int>(flat_.frame.width);
+    const auto height = static_cast<int>(flat_.frame.height);
+    result.image = film_mean(film, samples, width, height, format);
+    result.variance = film_variance(film, samples, width, height, format);
+
+    RenderStats &stats = result.stats;
+    stats.paths = paths_done_;
+    for (const ItemCounters &c : counters) {
+        stats.rays += c.rays_low + 4294967296.0 * c.rays_high;
+        if (c.nonfinite > 0 && stats.nonfinite_samples == 0) {
+            stats.nonfinite_x = static_cast<int>(c.first_nonfinite % flat_.frame.width);
+            stats.nonfinite_y = static_cast<int>(c.first_nonfinite / flat_.frame.width);
+        }
+        stats.nonfinite_samples += c.nonfinite;
+    }
+}
+
+} // namespace
+
+RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
+    RenderResult result;
+    RenderStats &stats = result.stats;
+    Stopwatch watch;
+    const DeviceEntry entry = choose_device(options.device);
+    stats.device = entry.name;
+    log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
+
+    FlattenOptions flatten_options;
+    flatten_options.brute_force = options.brute_force;
+    flatten_options.pixel_centers = options.pixel_centers;
+    flatten_options.strategy = options.strategy;
+    FlatScene flat = flatten(scene, flatten_options);
+    const int spp = options.spp > 0 ? options.spp : scene.sample_count;
+    flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
+    flat.config.ITEM_PIXELS = entry.is_cpu ? cpu_item_pixels : 1;
+    flat.frame.seed = options.seed;
+    flat.frame.total_samples = static_cast<uint>(spp);
+    stats.lanes = flat.config.LANES;
+    stats.width = static_cast<int>(flat.frame.width);
+    stats.height = static_cast<int>(flat.frame.height);
+    stats.spp = spp;
+    stats.triangles = flat.triangle_count;
+    stats.host_bytes = flat.bytes();
+    stats.seconds_build = watch.lap();
+
+    PathTracer tracer(entry, flat, options);
+    tracer.compile(stats);
+    stats.seconds_compile = watch.lap();
+    tracer.upload(stats);
+    stats.seconds_upload = watch.lap();
+    result.interrupted = tracer.render(spp, stats);
+    tracer.read(result, scene.film.pixel_format);
+    if (stats.nonfinite_samples > 0)
+        log::warn(fmt::format("{} samples were not finite and count as black; the first in pixel "
+                              "({}, {})",
+                              stats.nonfinite_samples, stats.nonfinite_x, stats.nonfinite_y));
+    return result;
+}
+
+} // namespace clrender

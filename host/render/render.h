@@ -1,0 +1,55 @@
+#pragma once
+/// From a parsed scene to a picture.
+
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace clrender {
+
+struct RenderOptions {
+    int spp = 0; ///< samples a pixel; 0: the scene's
+    std::uint32_t seed = 0;
+    int lanes = 0;                           ///< 1, 4, 8 or 16; 0: what suits the device
+    std::string device = "auto";             ///< see choose_device()
+    bool brute_force = false;                ///< test every triangle
+    bool pixel_centers = false;              ///< all samples at pixel centres
+    int strategy = 0;                        ///< 0 MIS, 1 light sampling only, 2 BSDF sampling only
+    int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
+    int tile = 0;                            ///< work-items in one launch; 0: chosen
+    std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
+    std::function<void(double)> on_progress; ///< paths done; called after each launch
+    std::function<bool()> should_stop;       ///< asked after each launch
+};
+
+/// What a run tells of itself. Seconds are wall time.
+struct RenderStats {
+    std::string device;
+    int lanes = 0;
+    int width = 0, height = 0;
+    int spp = 0; ///< samples every pixel has
+    double paths = 0, rays = 0;
+    double seconds_build = 0, seconds_compile = 0, seconds_upload = 0, seconds_render = 0;
+    std::string kernel_features;
+    bool kernel_cached = false;
+    std::size_t host_bytes = 0, device_bytes = 0;
+    std::size_t triangles = 0;
+    double nonfinite_samples = 0;
+    int nonfinite_x = 0, nonfinite_y = 0; ///< the first pixel that had one
+};
+
+/// `image` has the channels of the film's pixel format; `variance` has as many and holds the
+/// estimated variance of each pixel's mean (of luminance: an upper bound; of alpha: 0).
+struct RenderResult {
+    Image image;
+    Image variance;
+    RenderStats stats;
+    bool interrupted = false;
+};
+
+/// Flattens, compiles, uploads and renders. Throws DeviceError.
+RenderResult render_scene(const Scene &scene, const RenderOptions &options = {});
+
+} // namespace clrender

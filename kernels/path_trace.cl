@@ -1,0 +1,370 @@
+/* The bounce loop.
+
+   A work-item renders ITEM_PIXELS neighbouring pixels, block of samples by block of samples, LANES
+   paths side by side. A lane whose path has ended takes the next sample of the block, so lanes stay
+   full; only the end of a block runs with empty ones.
+
+   Reads the scene, adds to the film and to the item's counters. Width: LANES. */
+
+#include "lanes.clh"
+
+#include "bsdf.clh"
+#include "camera.clh"
+#include "environment.clh"
+#include "film.clh"
+#include "light.clh"
+#include "rng.clh"
+#include "scene.clh"
+#include "shared/launch_data.h"
+#include "surface.clh"
+
+/* Numbers that a bounce uses, in their order: light sampling takes the first seven. */
+#define BOUNCE_LIGHT 0u
+#define BOUNCE_LOBE 7u
+#define BOUNCE_BSDF 8u
+#define BOUNCE_ROULETTE 10u
+#define BOUNCE_DIMENSIONS 11u
+
+/* Lanes that have to be idle before new samples are started: starting costs the same for one lane
+   as for all. */
+#if LANES >= 8
+#define REFILL_LANES 2
+#else
+#define REFILL_LANES 1
+#endif
+
+/* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
+   of the last direction, where the last vertex was not specular; `eta2` undoes the compression of
+   radiance in roulette; `radiance` is what the sample has gathered. */
+typedef struct {
+    mask_l alive;
+    vec3 o, d;
+    int_l self;
+    real t_max;
+    vec3 throughput, radiance;
+    real alpha;
+    real prev_pdf;
+    mask_l prev_specular;
+    real eta2;
+    int_l depth;
+    Sampler sampler;
+    int_l pixel; /* of the item; valid while alive or waiting to be added up */
+    mask_l pending;
+    uint_l rays;
+} Paths;
+
+/* What is left to do of the current block. */
+typedef struct {
+    uint pixel;
+    uint sample;
+    uint pixel_count;
+    uint first_sample, end_sample;
+    uint first_pixel;
+} Work;
+
+/* Idle lanes take the next samples in turn; lanes that find none stay idle. */
+CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
+    __global const FrameData *f = scene->frame;
+    int idle[LANES], pixel[LANES], taken[LANES];
+    uint sample[LANES];
+    store_int(~p->alive, idle);
+    store_int(p->pixel, pixel);
+    for (int i = 0; i < LANES; ++i) {
+        taken[i] = 0;
+        sample[i] = 0;
+        if (idle[i] && work->pixel < work->pixel_count) {
+            taken[i] = -1;
+            pixel[i] = (int)work->pixel;
+            sample[i] = work->sample;
+            if (++work->sample == work->end_sample) {
+                work->sample = work->first_sample;
+                ++work->pixel;
+            }
+        }
+    }
+    mask_l fresh = load_int(taken);
+    p->pixel = load_int(pixel);
+    uint_l linear = as_uint_l(p->pixel) + work->first_pixel;
+    uint_l row = linear / f->width;
+    uint_l column = linear - row * f->width;
+    Sampler sampler = sampler_init(f->seed, linear, load_uint(sample));
+    CameraRay ray = camera_ray(scene, as_int_l(column), as_int_l(row), sampler);
+    sampler_advance(&sampler, CAMERA_DIMENSIONS);
+#if HAS_CLIP || INTEGRATOR == 1
+    ray.o = v3_mad(ray.d, ray.t_near, ray.o);
+    ray.t_far -= ray.t_near;
+#endif
+    p->alive |= fresh;
+    p->pending |= fresh;
+    p->o = v3_pick(fresh, ray.o, p->o);
+    p->d = v3_pick(fresh, ray.d, p->d);
+    p->self = ipick(fresh, int_of(-1), p->self);
+    p->t_max = pick(fresh, ray.t_far, p->t_max);
+    p->throughput = v3_pick(fresh, v3(ray.weight, ray.weight, ray.weight), p->throughput);
+    p->radiance = v3_pick(fresh, v3_of(0.0f, 0.0f, 0.0f), p->radiance);
+#if ENVIRONMENT && !HIDE_EMITTERS
+    p->alpha = pick(fresh, ray.weight, p->alpha);
+#else
+    p->alpha = pick(fresh, real_of(0.0f), p->alpha);
+#endif
+    p->prev_specular |= fresh;
+    p->eta2 = pick(fresh, real_of(1.0f), p->eta2);
+    p->depth = ipick(fresh, int_of(0), p->depth);
+    p->sampler.counter = upick(fresh, sampler.counter, p->sampler.counter);
+    p->sampler.key = upick(fresh, sampler.key, p->sampler.key);
+}
+
+CLR_INLINE void paths_add_radiance(Paths *p, vec3 radiance, real weight, mask_l on) {
+    weight = pick(on, weight, real_of(0.0f));
+    vec3 value = v3_mul(p->throughput, radiance);
+    /* Lanes that are off may hold anything, so they are picked out and not multiplied by zero. */
+    p->radiance.x = pick(on, fma(value.x, weight, p->radiance.x), p->radiance.x);
+    p->radiance.y = pick(on, fma(value.y, weight, p->radiance.y), p->radiance.y);
+    p->radiance.z = pick(on, fma(value.z, weight, p->radiance.z), p->radiance.z);
+}
+
+/* Weight of light that BSDF sampling has found, when light sampling has density `pdf` there. */
+CLR_INLINE real weight_of_chance(const Paths *p, real pdf) {
+#if STRATEGY == 0
+    return pick(p->prev_specular, real_of(1.0f), mis_weight(p->prev_pdf, pdf));
+#elif STRATEGY == 1
+    return pick(p->prev_specular, real_of(1.0f), real_of(0.0f));
+#else
+    return real_of(1.0f);
+#endif
+}
+
+#if ENVIRONMENT
+/* Light that escaping paths bring home. */
+CLR_INLINE void paths_add_environment(const SceneData *scene, Paths *p, mask_l escaped) {
+    __global const FrameData *f = scene->frame;
+#if HIDE_EMITTERS
+    escaped &= ~ieq(p->depth, int_of(0));
+#endif
+    if (!any_lane(escaped))
+        return;
+    vec3 scale = v3_of(f->env_radiance[0], f->env_radiance[1], f->env_radiance[2]);
+#if ENVIRONMENT == 2
+    real pdf;
+    vec3 radiance = env_eval(scene, p->d, escaped, &pdf);
+    radiance = v3_mul(radiance, scale);
+    paths_add_radiance(p, radiance, weight_of_chance(p, pdf * f->env_probability), escaped);
+#else
+    paths_add_radiance(p, scale, real_of(1.0f), escaped);
+#endif
+}
+#endif
+
+#if HAS_AREA_EMITTERS
+/* Light of the surfaces that paths have met. */
+CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface surface, real t,
+                                   mask_l hit) {
+    mask_l front = lt(v3_dot(surface.ns, p->d), real_of(0.0f));
+    mask_l lit = hit & front & ige(surface.emitter, int_of(0));
+    if (!any_lane(lit))
+        return;
+    real pdf;
+    vec3 radiance = light_of_surface(scene, surface, p->o, p->d, t, lit, &pdf);
+    paths_add_radiance(p, radiance, weight_of_chance(p, pdf), lit);
+}
+#endif
+
+#if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
+/* Direct light at diffuse surfaces: one sampled light each, behind a shadow ray. */
+CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
+                                 vec3 albedo, int_l prim, mask_l diffuse) {
+    LightSample light = light_sample(scene, surface.p, prim, p->sampler, BOUNCE_LIGHT, diffuse);
+    real cosine = v3_dot(n, light.wi);
+    mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
+    if (!any_lane(wanted))
+        return;
+    vec3 o = ray_origin(surface, light.wi);
+    p->rays -= as_uint_l(wanted);
+    mask_l lit = wanted & ~scene_occluded(scene, o, light.wi, prim, light.t_max, wanted);
+    real bsdf_pdf = cosine * CLR_INV_PI;
+    real weight = bsdf_pdf / light.pdf;
+#if STRATEGY == 0
+    weight *= pick(light.delta, real_of(1.0f), mis_weight(light.pdf, bsdf_pdf));
+#endif
+    paths_add_radiance(p, v3_mul(albedo, light.radiance), weight, lit);
+}
+#endif
+
+/* Roulette: paths go on with the probability of their throughput, .95 at most. */
+#if HAS_ROULETTE
+CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
+    mask_l late = p->alive & ige(p->depth, int_of(scene->frame->rr_depth));
+    if (!any_lane(late))
+        return;
+    vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
+    real survival = min(v3_max(size) * p->eta2, real_of(0.95f));
+    real u = sampler_get(p->sampler, BOUNCE_ROULETTE);
+    p->throughput = v3_pick(late, v3_scale(p->throughput, 1.0f / survival), p->throughput);
+    p->alive &= ~late | lt(u, survival);
+}
+#endif
+
+/* From one vertex to the next. */
+CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
+    __global const FrameData *f = scene->frame;
+    p->rays -= as_uint_l(p->alive);
+    Hit hit = scene_closest(scene, p->o, p->d, p->self, p->t_max, p->alive);
+    mask_l met = p->alive & ige(hit.prim, int_of(0));
+    p->t_max = real_of(INFINITY);
+
+#if INTEGRATOR == 1
+    /* The depth is measured from the near clip plane, as in Mitsuba. */
+    real distance = hit.t * f->length_unit;
+    p->radiance = v3_pick(met, v3_scale(p->throughput, distance), p->radiance);
+    p->alpha = pick(met, p->throughput.x, p->alpha);
+    p->alive = no_lanes();
+#else
+
+#if ENVIRONMENT
+    paths_add_environment(scene, p, p->alive & ~met);
+#endif
+    p->alive = met;
+    if (!any_lane(met))
+        return;
+    Surface surface = surface_at(scene, p->o, p->d, hit, met);
+
+#if HIDE_EMITTERS && HAS_AREA_EMITTERS
+    /* Camera rays go straight through everything that emits. */
+    mask_l through = met & ieq(p->depth, int_of(0)) & ige(surface.emitter, int_of(0));
+    p->o = v3_pick(through, ray_origin(surface, p->d), p->o);
+    p->self = ipick(through, hit.prim, p->self);
+    met &= ~through;
+#endif
+    /* The camera's path has the filter's weight as its throughput until its first bounce. */
+    p->alpha = pick(met & ieq(p->depth, int_of(0)), p->throughput.x, p->alpha);
+#if HAS_AREA_EMITTERS
+    paths_add_emission(scene, p, surface, hit.t, met);
+#endif
+    mask_l going = met & ilt(p->depth, int_of(f->max_depth - 1));
+
+    /* The material of the side that the path comes from. */
+    real cosine = -v3_dot(surface.ns, p->d);
+    mask_l back = lt(cosine, real_of(0.0f));
+    int_l material = material_of_side(surface.materials, back);
+    going &= ~ieq(material, int_of((int)CLR_NO_MATERIAL)) & gt(fabs(cosine), real_of(0.0f));
+#if HIDE_EMITTERS && HAS_AREA_EMITTERS
+    p->alive = going | through;
+#else
+    p->alive = going;
+#endif
+    if (!any_lane(going))
+        return;
+    material = ipick(going, material, int_of(0));
+    Bsdf bsdf = bsdf_fetch(scene, material, surface.u, surface.v, going);
+    vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
+    cosine = fabs(cosine);
+
+#if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
+    mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
+    if (any_lane(diffuse))
+        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, diffuse);
+#endif
+
+    BsdfSample sample = bsdf_sample(
+        bsdf, p->d, n, cosine, back, sampler_get(p->sampler, BOUNCE_LOBE),
+        sampler_get(p->sampler, BOUNCE_BSDF), sampler_get(p->sampler, BOUNCE_BSDF + 1u));
+    p->throughput = v3_pick(going, v3_mul(p->throughput, sample.weight), p->throughput);
+    p->o = v3_pick(going, ray_origin(surface, sample.wo), p->o);
+    p->d = v3_pick(going, v3_normalize(sample.wo), p->d);
+    p->self = ipick(going, hit.prim, p->self);
+    p->prev_pdf = pick(going, sample.pdf, p->prev_pdf);
+    p->prev_specular = ipick(going, sample.specular, p->prev_specular);
+    p->eta2 = pick(going, p->eta2 * sample.eta * sample.eta, p->eta2);
+    p->depth = ipick(going, p->depth + 1, p->depth);
+    vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
+    p->alive &= ~going | gt(v3_max(size), real_of(0.0f));
+#if HAS_ROULETTE
+    paths_roulette(scene, p);
+#endif
+    sampler_advance(&p->sampler, BOUNCE_DIMENSIONS);
+#endif
+}
+
+/* All samples of one block for the pixels of the item. */
+CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block, uint *rays,
+                             ItemCounters *counters) {
+    Paths p;
+    p.alive = no_lanes();
+    p.pending = no_lanes();
+    p.rays = as_uint_l(no_lanes());
+    p.pixel = int_of(0);
+    p.o = p.d = p.throughput = p.radiance = v3_of(0.0f, 0.0f, 0.0f);
+    p.self = int_of(-1);
+    p.t_max = p.alpha = p.prev_pdf = p.eta2 = real_of(0.0f);
+    p.prev_specular = no_lanes();
+    p.depth = int_of(0);
+    p.sampler.counter = p.sampler.key = as_uint_l(no_lanes());
+    for (;;) {
+        int idle = LANES - count_lanes(p.alive);
+        if (idle == LANES || (idle >= REFILL_LANES && work.pixel < work.pixel_count)) {
+            mask_l finished = p.pending & ~p.alive;
+            block_add(block, p.radiance, p.alpha, p.pixel, finished, work.first_pixel, counters);
+            p.pending &= p.alive;
+            if (work.pixel < work.pixel_count)
+                paths_refill(scene, &p, &work);
+            if (!any_lane(p.alive))
+                break;
+        }
+        paths_step(scene, &p);
+    }
+    uint counts[LANES];
+    store_uint(p.rays, counts);
+    for (int i = 0; i < LANES; ++i)
+        *rays += counts[i];
+}
+
+/* Item i of the launch renders pixels (first_item + i) * ITEM_PIXELS and following, the sample
+   blocks [first_block, end_block). */
+__kernel void path_trace(__global const FrameData *frame, __global const Sphere *spheres,
+                         __global const Planar *planars, __global const BvhNode *nodes,
+                         __global const TriangleBlock *triangle_blocks,
+                         __global const SphereBlock *sphere_blocks, __global const uint *triangles,
+                         __global const float *normals, __global const float *uvs,
+                         __global const uint *shape_of, __global const ShapeInfo *shapes,
+                         __global const float *shape_frames, __global const Material *materials,
+                         __global const EmitterInfo *emitters, __global const Light *lights,
+                         __global const LightTriangle *light_triangles,
+                         __global const AliasEntry *light_alias, __global const TextureInfo *textures,
+                         __global const uint *texels_u8, __global const float *texels_f32,
+                         __global const float *decode, __global const float *env_texels,
+                         __global const AliasEntry *env_alias, __global const float *env_density,
+                         __global const float *filter, __global FilmPixel *film,
+                         __global ItemCounters *item_counters, uint first_item, uint item_count,
+                         uint first_block, uint end_block) {
+    if (get_global_id(0) >= item_count)
+        return;
+    const uint item = first_item + (uint)get_global_id(0);
+    SceneData scene = {frame,           spheres,      planars,   nodes,       triangle_blocks,
+                       sphere_blocks,   triangles,    normals,   uvs,         shape_of,
+                       shapes,          shape_frames, materials, emitters,    lights,
+                       light_triangles, light_alias,  textures,  texels_u8,   texels_f32,
+                       decode,          env_texels,   env_alias, env_density, filter};
+    const uint pixels = frame->width * frame->height;
+    const uint first_pixel = item * ITEM_PIXELS;
+    if (first_pixel >= pixels)
+        return;
+    ItemCounters counters = item_counters[item];
+    uint rays = 0;
+    for (uint b = first_block; b < end_block; ++b) {
+        Work work;
+        work.pixel = 0;
+        work.first_sample = b * CLR_BLOCK_SAMPLES;
+        work.end_sample = min(work.first_sample + CLR_BLOCK_SAMPLES, frame->total_samples);
+        work.sample = work.first_sample;
+        work.pixel_count = min((uint)ITEM_PIXELS, pixels - first_pixel);
+        work.first_pixel = first_pixel;
+        BlockSums block;
+        block_clear(&block);
+        render_block(&scene, work, &block, &rays, &counters);
+        film_add(film, first_pixel, work.pixel_count, &block);
+    }
+    const uint low = counters.rays_low + rays;
+    counters.rays_high += low < rays ? 1u : 0u;
+    counters.rays_low = low;
+    item_counters[item] = counters;
+}
