@@ -39,7 +39,8 @@ public:
         read_file(path, {}, none, "");
         resolve_references();
         for (const std::string &name : parameters_.unused_defines())
-            log::warn("-D " + name + ": nothing in " + path + " uses it");
+            log::warn(std::string("-D ").append(name).append(": nothing in ").append(path) +
+                      " uses it");
         return std::move(document_);
     }
 
@@ -279,8 +280,8 @@ Spectrum parse_spectrum_element(pugi::xml_node node, const XmlFile &xml, const S
     const std::string filename = node.attribute("filename").value();
     if (value.empty() == filename.empty())
         throw InputError(where, "<spectrum> needs a value or a filename, expected one of the two");
-    const Spectrum spectrum = value.empty() ? read_spectrum_file(find_file(file, filename, where))
-                                            : parse_spectrum(where, value);
+    Spectrum spectrum = value.empty() ? read_spectrum_file(find_file(file, filename, where))
+                                      : parse_spectrum(where, value);
     if (value.empty() ? spectrum.values.size() < 2
                       : spectrum.wavelengths.size() == 1 || spectrum.values.empty())
         throw InputError(where, "<spectrum> has fewer than two wavelengths, expected at least two");

@@ -56,9 +56,10 @@ glm::dmat4 parse_matrix(pugi::xml_node node, const XmlFile &file) {
                                                " numbers, expected 16 or 9, row by row");
     const int side = numbers.size() == 16 ? 4 : 3;
     glm::dmat4 matrix(1);
+    auto number = numbers.begin();
     for (int row = 0; row < side; ++row)
         for (int column = 0; column < side; ++column)
-            matrix[column][row] = numbers[static_cast<std::size_t>(row * side + column)];
+            matrix[column][row] = *number++;
     return matrix;
 }
 
@@ -132,15 +133,21 @@ void check_attributes(pugi::xml_node node, const XmlFile &file,
     std::vector<std::string> allowed = required;
     allowed.insert(allowed.end(), optional.begin(), optional.end());
     const std::string element = "<" + std::string(node.name()) + ">";
-    for (const pugi::xml_attribute attribute : node.attributes())
-        if (std::find(allowed.begin(), allowed.end(), attribute.name()) == allowed.end())
-            throw InputError(file.where(node), "unknown attribute " + in_quotes(attribute.name()) +
-                                                   " of " + element + ", " +
-                                                   expected_one_of(attribute.name(), allowed));
+    for (const pugi::xml_attribute attribute : node.attributes()) {
+        const std::string name = attribute.name();
+        if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
+            throw InputError(file.where(node),
+                             std::string("unknown attribute ").append(in_quotes(name)) + " of " +
+                                 element + ", " + expected_one_of(name, allowed));
+    }
     for (const std::string &name : required)
         if (!node.attribute(name.c_str()))
-            throw InputError(file.where(node), element + " has no attribute \"" + name +
-                                                   "\", expected " + name + "=\"...\"");
+            throw InputError(file.where(node), std::string(element)
+                                                   .append(" has no attribute \"")
+                                                   .append(name)
+                                                   .append("\", expected ")
+                                                   .append(name)
+                                                   .append("=\"...\""));
 }
 
 bool is_singular(const glm::dmat3 &matrix) {
@@ -164,6 +171,7 @@ glm::dmat4 parse_transform(pugi::xml_node transform, const XmlFile &file, Parame
         const auto parser = parsers.find(node.name());
         if (parser == parsers.end()) {
             std::vector<std::string> names;
+            names.reserve(parsers.size());
             for (const auto &[name, unused] : parsers)
                 names.push_back(name);
             throw InputError(file.where(node), "unknown element " + in_quotes(node.name()) +
