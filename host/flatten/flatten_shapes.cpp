@@ -226,6 +226,8 @@ void flatten_shapes(Flattening &work) {
         return;
     flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
     flat.bvh = build_bvh(work.corners, bvh_spheres);
+    flat.frame.triangle_blocks = static_cast<uint>(flat.bvh.triangle_blocks.size());
+    flat.frame.sphere_blocks = static_cast<uint>(flat.bvh.sphere_blocks.size());
     if (flat.bvh.degenerate > 0)
         log::warn(
             fmt::format("{} triangles or spheres without area are left out", flat.bvh.degenerate));

@@ -16,13 +16,15 @@ __kernel void probe_bvh_closest(__global const BvhNode *nodes,
     const BvhProbeRay ray = rays[i];
     const float3 o = (float3)(ray.o[0], ray.o[1], ray.o[2]);
     const float3 d = (float3)(ray.d[0], ray.d[1], ray.d[2]);
-    float t = ray.t_max, u = 0.0f, v = 0.0f;
-    uint prim = BVH_NO_PRIM;
-    bvh_closest(nodes, triangles, spheres, o, d, ray.self, &t, &prim, &u, &v);
-    hits[i].t = t;
-    hits[i].prim = prim;
-    hits[i].u = u;
-    hits[i].v = v;
+    BvhHit hit;
+    hit.t = ray.t_max;
+    hit.u = hit.v = 0.0f;
+    hit.prim = BVH_NO_PRIM;
+    bvh_closest(nodes, triangles, spheres, o, d, ray.self, &hit);
+    hits[i].t = hit.t;
+    hits[i].prim = hit.prim;
+    hits[i].u = hit.u;
+    hits[i].v = hit.v;
 }
 
 /* As above; of each record only `prim` is written: 1 if anything is hit, else 0. */

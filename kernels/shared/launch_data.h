@@ -45,7 +45,9 @@ typedef struct {
     uint prim_bvh_sphere; /* first primitive that is a sphere in the BVH */
     uint total_samples;   /* a pixel, over all launches */
     float filter_radius;  /* pixels */
-    uint pad2[7];
+    uint triangle_blocks; /* in the BVH's leaves */
+    uint sphere_blocks;
+    uint pad2[5];
 } FrameData;
 CLR_STATIC_SIZE(FrameData, 256);
 
