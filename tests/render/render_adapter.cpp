@@ -33,8 +33,8 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.seed = how.seed;
     options.lanes = how.lanes;
     options.pixel_centers = how.pixel_centers;
-    options.batch_blocks = how.batch_blocks;
-    options.tile_items = how.tile_items;
+    options.batch = how.batch_blocks;
+    options.tile = how.tile_items;
     RenderResult result = render_scene(scene, options);
     MeasuredImage measured{std::move(result.image), std::move(result.variance), {}};
     add_alpha_variance(measured, options.spp, scene.film.filter);
