@@ -235,10 +235,24 @@ private:
 };
 #endif
 
-void print_row(const char *label, const std::vector<double> &rates) {
+struct Workload {
+    const char *label;
+    const Rays *rays;
+    bool any;
+};
+
+double time_of(const test::ClTestDevice &device, Contender &contender, const Tree &tree,
+               const Workload &load) {
+    double seconds = 0.0;
+    trace(device, load.any ? contender.any : contender.closest, tree, *load.rays, &seconds);
+    return seconds;
+}
+
+/// The median of each column, and its ratio to the first one's.
+void print_row(const char *label, const std::vector<std::vector<double>> &rates) {
     std::printf("%-16s", label);
-    for (const double rate : rates) {
-        std::printf(" %10.2f (%4.2f)", rate, rate / rates[0]);
+    for (const auto &column : rates) {
+        std::printf(" %10.2f (%4.2f)", median(column), median(column) / median(rates[0]));
     }
     std::printf("\n");
 }
@@ -287,34 +301,24 @@ int run(const std::vector<std::string> &arguments) {
 #endif
     std::printf("\n");
 
-    struct Workload {
-        const char *label;
-        const Rays *rays;
-        bool any;
-    };
     for (const Workload &load :
          {Workload{"camera", &camera, false}, Workload{"diffuse bounce", &bounces, false},
           Workload{"shadow", &shadows, true}}) {
-        std::vector<std::vector<double>> rates(contenders.size() + 1);
+        std::vector<std::vector<double>> rates(contenders.size());
+        std::vector<double> embree_rates;
+        const double million = double(load.rays->size()) * 1e-6;
         for (int round = 0; round < kRounds; ++round) {
-            double seconds = 0.0;
             for (std::size_t i = 0; i < contenders.size(); ++i) {
-                cl::Kernel &kernel = load.any ? contenders[i].any : contenders[i].closest;
-                trace(device, kernel, tree, *load.rays, &seconds);
-                rates[i].push_back(double(load.rays->size()) * 1e-6 / seconds);
+                rates[i].push_back(million / time_of(device, contenders[i], tree, load));
             }
 #ifdef CLRENDER_BENCH_EMBREE
-            rates.back().push_back(double(load.rays->size()) * 1e-6 /
-                                   embree.trace(*load.rays, load.any));
+            embree_rates.push_back(million / embree.trace(*load.rays, load.any));
 #endif
         }
-        std::vector<double> medians;
-        for (const auto &column : rates) {
-            if (!column.empty()) {
-                medians.push_back(median(column));
-            }
+        if (!embree_rates.empty()) {
+            rates.push_back(embree_rates);
         }
-        print_row(load.label, medians);
+        print_row(load.label, rates);
     }
     return 0;
 }
