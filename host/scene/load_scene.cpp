@@ -20,7 +20,8 @@ Scene load_scene(const std::string &path, const LoadOptions &options) {
         throw InputError({path, 0}, "unknown kind of scene, expected a .xml, .obj or .ply file");
 
     for (const auto &[name, value] : options.defines)
-        log::warn("-D " + name + ": nothing in " + path + " uses it");
+        log::warn(std::string("-D ").append(name).append(": nothing in ").append(path) +
+                  " uses it");
     return load_model(path);
 }
 
