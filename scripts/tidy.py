@@ -48,7 +48,7 @@ def tidy(source, build):
     """What clang-tidy has to say of `source`; empty when it is clean."""
     result = subprocess.run([TOOL, "--quiet", "-p", str(build), str(source)],
                             capture_output=True, text=True)
-    return "" if result.returncode == 0 else result.stdout + result.stderr
+    return "" if result.returncode == 0 else result.stdout or result.stderr
 
 
 def main():
