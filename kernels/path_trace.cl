@@ -102,11 +102,7 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     p->t_max = pick(fresh, ray.t_far, p->t_max);
     p->throughput = v3_pick(fresh, v3(ray.weight, ray.weight, ray.weight), p->throughput);
     p->radiance = v3_pick(fresh, v3_of(0.0f, 0.0f, 0.0f), p->radiance);
-#if ENVIRONMENT && !HIDE_EMITTERS
-    p->alpha = pick(fresh, ray.weight, p->alpha);
-#else
-    p->alpha = pick(fresh, real_of(0.0f), p->alpha);
-#endif
+    p->alpha = pick(fresh, ray.weight * f->env_alpha, p->alpha);
     p->prev_specular |= fresh;
     p->eta2 = pick(fresh, real_of(1.0f), p->eta2);
     p->depth = ipick(fresh, int_of(0), p->depth);
@@ -143,14 +139,13 @@ CLR_INLINE void paths_add_environment(const SceneData *scene, Paths *p, mask_l e
 #endif
     if (!any_lane(escaped))
         return;
-    vec3 scale = v3_of(f->env_radiance[0], f->env_radiance[1], f->env_radiance[2]);
 #if ENVIRONMENT == 2
     real pdf;
     vec3 radiance = env_eval(scene, p->d, escaped, &pdf);
-    radiance = v3_mul(radiance, scale);
     paths_add_radiance(p, radiance, weight_of_chance(p, pdf * f->env_probability), escaped);
 #else
-    paths_add_radiance(p, scale, real_of(1.0f), escaped);
+    vec3 radiance = v3_of(f->env_radiance[0], f->env_radiance[1], f->env_radiance[2]);
+    paths_add_radiance(p, radiance, real_of(1.0f), escaped);
 #endif
 }
 #endif
@@ -173,12 +168,12 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 /* Direct light at diffuse surfaces: one sampled light each, behind a shadow ray. */
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
                                  vec3 albedo, int_l prim, mask_l diffuse) {
-    LightSample light = light_sample(scene, surface.p, prim, p->sampler, BOUNCE_LIGHT, diffuse);
+    vec3 o = ray_origin(surface, n);
+    LightSample light = light_sample(scene, o, prim, p->sampler, BOUNCE_LIGHT, diffuse);
     real cosine = v3_dot(n, light.wi);
     mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
     if (!any_lane(wanted))
         return;
-    vec3 o = ray_origin(surface, light.wi);
     p->rays -= as_uint_l(wanted);
     mask_l lit = wanted & ~scene_occluded(scene, o, light.wi, prim, light.t_max, wanted);
     real bsdf_pdf = cosine * CLR_INV_PI;
@@ -236,7 +231,12 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     met &= ~through;
 #endif
     /* The camera's path has the filter's weight as its throughput until its first bounce. */
-    p->alpha = pick(met & ieq(p->depth, int_of(0)), p->throughput.x, p->alpha);
+    mask_l seen = met & ieq(p->depth, int_of(0));
+#if HAS_AREA_EMITTERS
+    if (f->max_depth == 1)
+        seen &= ige(surface.emitter, int_of(0)) & lt(v3_dot(surface.ns, p->d), real_of(0.0f));
+#endif
+    p->alpha = pick(seen, p->throughput.x, p->alpha);
 #if HAS_AREA_EMITTERS
     paths_add_emission(scene, p, surface, hit.t, met);
 #endif
@@ -329,13 +329,13 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
                          __global const float *shape_frames, __global const Material *materials,
                          __global const EmitterInfo *emitters, __global const Light *lights,
                          __global const LightTriangle *light_triangles,
-                         __global const AliasEntry *light_alias, __global const TextureInfo *textures,
-                         __global const uint *texels_u8, __global const float *texels_f32,
-                         __global const float *decode, __global const float *env_texels,
-                         __global const AliasEntry *env_alias, __global const float *env_density,
-                         __global const float *filter, __global FilmPixel *film,
-                         __global ItemCounters *item_counters, uint first_item, uint item_count,
-                         uint first_block, uint end_block) {
+                         __global const AliasEntry *light_alias,
+                         __global const TextureInfo *textures, __global const uint *texels_u8,
+                         __global const float *texels_f32, __global const float *decode,
+                         __global const float *env_texels, __global const AliasEntry *env_alias,
+                         __global const float *env_density, __global const float *filter,
+                         __global FilmPixel *film, __global ItemCounters *item_counters,
+                         uint first_item, uint item_count, uint first_block, uint end_block) {
     if (get_global_id(0) >= item_count)
         return;
     const uint item = first_item + (uint)get_global_id(0);

@@ -3,6 +3,7 @@
 #include "shared/film_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -76,53 +77,90 @@ double filter_value(const ReconstructionFilter &filter, double x) {
     return 0;
 }
 
-std::vector<float> tabulate_filter(const ReconstructionFilter &filter) {
-    // The running integrals of |filter| and of the filter by the midpoint rule, much finer than the
-    // table: the rule's error is of second order.
-    constexpr std::size_t cells = std::size_t{1} << 16;
-    const double radius = filter_radius(filter);
-    const double width = 2 * radius / static_cast<double>(cells);
-    std::vector<double> absolute(cells + 1, 0.0), plain(cells + 1, 0.0);
-    const auto left_of = [&](std::size_t i) { return -radius + width * static_cast<double>(i); };
-    for (std::size_t i = 0; i < cells; ++i) {
-        const double value = filter_value(filter, left_of(i) + width / 2);
-        absolute[i + 1] = absolute[i] + std::abs(value);
-        plain[i + 1] = plain[i] + value;
+namespace {
+
+/// The filter as a step function, as Mitsuba's scalar variants evaluate it: step k, from
+/// radius k / CLR_FILTER_LEVELS on, has the value at its inner end.
+class SteppedFilter {
+public:
+    explicit SteppedFilter(const ReconstructionFilter &filter)
+        : width_(filter_radius(filter) / CLR_FILTER_LEVELS) {
+        for (std::size_t k = 0; k < levels; ++k)
+            values_[k] = filter_value(filter, width_ * static_cast<double>(k));
     }
 
-    // Equal shares of |filter|, by linear interpolation of the running integral.
-    std::vector<float> table(CLR_FILTER_SIZE, 0.0f);
-    const auto place_of_share = [&](double share) {
-        const double target = share * absolute.back();
-        const auto above = std::upper_bound(absolute.begin(), absolute.end() - 1, target);
-        const std::size_t cell =
-            std::min(static_cast<std::size_t>(above - absolute.begin()), cells) - 1;
-        const double step = absolute[cell + 1] - absolute[cell];
-        return left_of(cell) + (step > 0 ? width * (target - absolute[cell]) / step : 0);
-    };
-    for (int i = 0; i <= CLR_FILTER_STEPS; ++i) {
-        const double share = static_cast<double>(i) / CLR_FILTER_STEPS;
-        table[static_cast<std::size_t>(CLR_FILTER_INVERSE + i)] =
-            static_cast<float>(place_of_share(share));
-        if (i < CLR_FILTER_STEPS) {
-            const double middle = place_of_share(share + 0.5 / CLR_FILTER_STEPS);
-            table[static_cast<std::size_t>(CLR_FILTER_SIGN + i)] =
-                filter_value(filter, middle) < 0 ? -1.0f : 1.0f;
+    static constexpr std::size_t levels = CLR_FILTER_LEVELS;
+
+    [[nodiscard]] double value(std::size_t level) const { return values_[level]; }
+    [[nodiscard]] double radius() const { return width_ * levels; }
+    [[nodiscard]] double outer_end(std::size_t level) const {
+        return width_ * static_cast<double>(level + 1);
+    }
+
+    /// Integral of the filter, or of its size, from distance `x` outwards, on one side.
+    [[nodiscard]] double beyond(double x, bool absolute) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < levels; ++k) {
+            const double from = std::max(x, width_ * static_cast<double>(k));
+            const double length = std::max(0.0, outer_end(k) - from);
+            sum += length * (absolute ? std::abs(values_[k]) : values_[k]);
         }
+        return sum;
     }
 
-    // What lies beyond k + 1/2 pixels on one side.
-    for (int k = 0; k < CLR_FILTER_EDGES; ++k) {
-        const double border = k + 0.5;
-        if (border >= radius)
-            continue;
-        const auto cell = static_cast<std::size_t>((radius - border) / width);
-        table[static_cast<std::size_t>(CLR_FILTER_EDGE + k)] =
-            static_cast<float>(absolute[cell] / absolute.back());
-        table[static_cast<std::size_t>(CLR_FILTER_EDGE_SIGNED + k)] =
-            static_cast<float>(plain[cell] / plain.back());
+    /// The distance beyond which `share` of the integral of its size lies, on one side.
+    [[nodiscard]] double distance_of(double share) const {
+        double rest = share * beyond(0, true);
+        for (std::size_t k = levels; k-- > 0;) {
+            const double height = std::abs(values_[k]);
+            if (rest <= height * width_)
+                return outer_end(k) - (height > 0 ? rest / height : 0);
+            rest -= height * width_;
+        }
+        return 0;
     }
-    table[CLR_FILTER_NORM] = static_cast<float>(absolute.back() / plain.back());
+
+private:
+    double width_;
+    std::array<double, levels> values_{};
+};
+
+} // namespace
+
+std::vector<float> tabulate_filter(const ReconstructionFilter &filter) {
+    const SteppedFilter stepped(filter);
+    const double integral = 2 * stepped.beyond(0, false);
+    std::vector<float> table(CLR_FILTER_SIZE, 0.0f);
+    const auto at = [&](int offset, std::size_t i) -> float & {
+        return table[static_cast<std::size_t>(offset) + i];
+    };
+    for (std::size_t k = 0; k < SteppedFilter::levels; ++k)
+        at(CLR_FILTER_VALUES, k) = static_cast<float>(stepped.value(k) / integral);
+
+    // Places in proportion to |filter|, the left half mirrored; the same ones as the device reads.
+    constexpr std::size_t steps = CLR_FILTER_STEPS;
+    for (std::size_t i = 0; i <= steps / 2; ++i) {
+        const double share = 2 * static_cast<double>(i) / steps;
+        const auto distance = static_cast<float>(stepped.distance_of(share));
+        at(CLR_FILTER_INVERSE, i) = -distance;
+        at(CLR_FILTER_INVERSE, steps - i) = distance;
+    }
+
+    // What lies beyond k + 1/2 pixels: of the numbers by the table itself.
+    for (std::size_t k = 0; k < CLR_FILTER_EDGES; ++k) {
+        const double border = static_cast<double>(k) + 0.5;
+        if (border >= stepped.radius())
+            continue;
+        std::size_t i = 0;
+        while (i < steps / 2 && -static_cast<double>(at(CLR_FILTER_INVERSE, i + 1)) > border)
+            ++i;
+        const double outer = -static_cast<double>(at(CLR_FILTER_INVERSE, i));
+        const double inner = -static_cast<double>(at(CLR_FILTER_INVERSE, i + 1));
+        const double part = outer > inner ? (outer - border) / (outer - inner) : 0;
+        at(CLR_FILTER_EDGE, k) = static_cast<float>((static_cast<double>(i) + part) / steps);
+        at(CLR_FILTER_EDGE_SIGNED, k) =
+            static_cast<float>(stepped.beyond(border, false) / integral);
+    }
     return table;
 }
 

@@ -67,6 +67,9 @@ double build_cells(std::size_t width, std::size_t height, FlatScene &flat) {
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power) {
     FlatScene &flat = work.flat;
     FrameData &f = flat.frame;
+    const Integrator &integrator = work.scene.integrator;
+    f.env_alpha =
+        integrator.kind == IntegratorKind::path && !integrator.hide_emitters ? 1.0f : 0.0f;
     if (emitter.kind == EmitterKind::constant) {
         const Rgb radiance = work.scene.textures[static_cast<std::size_t>(emitter.radiance)].value;
         for (int c = 0; c < 3; ++c)

@@ -137,6 +137,8 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         const uint bvh_sphere = flat.frame.prim_bvh_sphere;
         const Sphere &sphere =
             flat.spheres[light.prim < bvh_sphere ? light.prim : light.prim - bvh_sphere];
+        light.shape =
+            light.prim < bvh_sphere ? light.prim : flat.shape_of[light.prim - flat.planars.size()];
         info.kind = light.kind = CLR_LIGHT_SPHERE;
         std::copy_n(sphere.center, 3, light.position);
         std::copy_n(sphere.center, 3, info.center);

@@ -26,10 +26,10 @@ typedef struct {
     float axis[3];
     float length_unit; /* scene units per renderer's unit, for the depth integrator */
     float lens_x[3];
-    float pad0;
+    float env_alpha; /* of camera rays that leave the scene */
     float lens_y[3];
     float pad1;
-    float env_radiance[3];  /* constant: radiance; map: scale */
+    float env_radiance[3];  /* of a constant environment */
     float env_probability;  /* that light sampling chooses the environment */
     float env_rotation[12]; /* rows of world-to-environment, each followed by 0 */
     uint env_width;         /* pixels of the map */

@@ -84,7 +84,7 @@ typedef struct {
     uint prim;
     float probability;
     float area;
-    uint pad;
+    uint shape; /* of a sphere */
 } Light;
 CLR_STATIC_SIZE(Light, 48);
 
