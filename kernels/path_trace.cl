@@ -1,6 +1,6 @@
 /* The bounce loop.
 
-   A work-item renders ITEM_PIXELS neighbouring pixels, block of samples by block of samples, LANES
+   A work-item renders a tile of TILE x TILE pixels, block of samples by block of samples, LANES
    paths side by side. A lane whose path has ended takes the next sample of the block, so lanes stay
    full; only the end of a block runs with empty ones.
 
@@ -48,47 +48,57 @@ typedef struct {
     real eta2;
     int_l depth;
     Sampler sampler;
-    int_l pixel; /* of the item; valid while alive or waiting to be added up */
+    int_l pixel; /* of the tile, row by row; valid while pending: alive, or not yet added up */
     mask_l pending;
+    real weight; /* the camera ray's */
+    real dx, dy;
     uint_l rays;
 } Paths;
 
-/* What is left to do of the current block. */
+/* A tile, cut off where the picture ends, and what is left to do of its current block. */
 typedef struct {
-    uint pixel;
-    uint sample;
-    uint pixel_count;
+    int x, y, width, height;
+    int next_x, next_y;
+    uint next_sample;
     uint first_sample, end_sample;
-    uint first_pixel;
 } Work;
+
+CLR_INLINE int work_left(const Work *work) {
+    return work->next_y < work->height;
+}
 
 /* Idle lanes take the next samples in turn; lanes that find none stay idle. */
 CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     __global const FrameData *f = scene->frame;
-    int idle[LANES], pixel[LANES], taken[LANES];
+    int idle[LANES], pixel[LANES], taken[LANES], column[LANES], row[LANES];
     uint sample[LANES];
     store_int(~p->alive, idle);
     store_int(p->pixel, pixel);
     for (int i = 0; i < LANES; ++i) {
         taken[i] = 0;
         sample[i] = 0;
-        if (idle[i] && work->pixel < work->pixel_count) {
+        column[i] = row[i] = 0;
+        if (idle[i] && work_left(work)) {
             taken[i] = -1;
-            pixel[i] = (int)work->pixel;
-            sample[i] = work->sample;
-            if (++work->sample == work->end_sample) {
-                work->sample = work->first_sample;
-                ++work->pixel;
+            pixel[i] = work->next_y * TILE + work->next_x;
+            column[i] = work->x + work->next_x;
+            row[i] = work->y + work->next_y;
+            sample[i] = work->next_sample;
+            if (++work->next_sample == work->end_sample) {
+                work->next_sample = work->first_sample;
+                if (++work->next_x == work->width) {
+                    work->next_x = 0;
+                    ++work->next_y;
+                }
             }
         }
     }
     mask_l fresh = load_int(taken);
     p->pixel = load_int(pixel);
-    uint_l linear = as_uint_l(p->pixel) + work->first_pixel;
-    uint_l row = linear / f->width;
-    uint_l column = linear - row * f->width;
+    int_l px = load_int(column), py = load_int(row);
+    uint_l linear = as_uint_l(py * (int)f->width + px);
     Sampler sampler = sampler_init(f->seed, linear, load_uint(sample));
-    CameraRay ray = camera_ray(scene, as_int_l(column), as_int_l(row), sampler);
+    CameraRay ray = camera_ray(scene, px, py, sampler);
     sampler_advance(&sampler, CAMERA_DIMENSIONS);
 #if HAS_CLIP || INTEGRATOR == 1
     ray.o = v3_mad(ray.d, ray.t_near, ray.o);
@@ -101,6 +111,9 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     p->self = ipick(fresh, int_of(-1), p->self);
     p->t_max = pick(fresh, ray.t_far, p->t_max);
     p->throughput = v3_pick(fresh, v3(ray.weight, ray.weight, ray.weight), p->throughput);
+    p->weight = pick(fresh, ray.weight, p->weight);
+    p->dx = pick(fresh, ray.dx, p->dx);
+    p->dy = pick(fresh, ray.dy, p->dy);
     p->radiance = v3_pick(fresh, v3_of(0.0f, 0.0f, 0.0f), p->radiance);
     p->alpha = pick(fresh, ray.weight * f->env_alpha, p->alpha);
     p->prev_specular |= fresh;
@@ -108,6 +121,37 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     p->depth = ipick(fresh, int_of(0), p->depth);
     p->sampler.counter = upick(fresh, sampler.counter, p->sampler.counter);
     p->sampler.key = upick(fresh, sampler.key, p->sampler.key);
+}
+
+/* Adds what the finished paths have gathered to the block; a path that is not finite is counted,
+   and counts as black. */
+CLR_INLINE void paths_finish(const SceneData *scene, Paths *p, const Work *work, BlockSums *block,
+                             ItemCounters *counters) {
+    float r[LANES], g[LANES], b[LANES], alpha[LANES], weight[LANES], dx[LANES], dy[LANES];
+    int lanes[LANES], finite[LANES], pixel[LANES];
+    store_real(p->radiance.x, r);
+    store_real(p->radiance.y, g);
+    store_real(p->radiance.z, b);
+    store_real(p->alpha, alpha);
+    store_real(p->weight, weight);
+    store_real(p->dx, dx);
+    store_real(p->dy, dy);
+    store_int(is_finite(p->radiance.x) & is_finite(p->radiance.y) & is_finite(p->radiance.z),
+              finite);
+    store_int(p->pending & ~p->alive, lanes);
+    store_int(p->pixel, pixel);
+    for_each_lane(i, lanes) {
+        const int x = pixel[i] % TILE, y = pixel[i] / TILE;
+        FilmSample s = {r[i], g[i], b[i], alpha[i], weight[i], dx[i], dy[i]};
+        if (!finite[i]) {
+            if (counters->nonfinite++ == 0)
+                counters->first_nonfinite =
+                    (uint)(work->y + y) * scene->frame->width + (uint)(work->x + x);
+            s.r = s.g = s.b = 0.0f;
+        }
+        block_add_sample(scene, block, x, y, s);
+    }
+    p->pending &= p->alive;
 }
 
 CLR_INLINE void paths_add_radiance(Paths *p, vec3 radiance, real weight, mask_l on) {
@@ -285,27 +329,21 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
 #endif
 }
 
-/* All samples of one block for the pixels of the item. */
+/* All samples of one block for the pixels of the tile. */
 CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block, uint *rays,
                              ItemCounters *counters) {
     Paths p;
-    p.alive = no_lanes();
-    p.pending = no_lanes();
-    p.rays = as_uint_l(no_lanes());
-    p.pixel = int_of(0);
-    p.o = p.d = p.throughput = p.radiance = v3_of(0.0f, 0.0f, 0.0f);
+    p.alive = p.pending = p.prev_specular = no_lanes();
+    p.rays = p.sampler.counter = p.sampler.key = as_uint_l(no_lanes());
+    p.pixel = p.depth = int_of(0);
     p.self = int_of(-1);
-    p.t_max = p.alpha = p.prev_pdf = p.eta2 = real_of(0.0f);
-    p.prev_specular = no_lanes();
-    p.depth = int_of(0);
-    p.sampler.counter = p.sampler.key = as_uint_l(no_lanes());
+    p.o = p.d = p.throughput = p.radiance = v3_of(0.0f, 0.0f, 0.0f);
+    p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.weight = p.dx = p.dy = real_of(0.0f);
     for (;;) {
-        int idle = LANES - count_lanes(p.alive);
-        if (idle == LANES || (idle >= REFILL_LANES && work.pixel < work.pixel_count)) {
-            mask_l finished = p.pending & ~p.alive;
-            block_add(block, p.radiance, p.alpha, p.pixel, finished, work.first_pixel, counters);
-            p.pending &= p.alive;
-            if (work.pixel < work.pixel_count)
+        const int idle = LANES - count_lanes(p.alive);
+        if (idle == LANES || (idle >= REFILL_LANES && work_left(&work))) {
+            paths_finish(scene, &p, &work, block, counters);
+            if (work_left(&work))
                 paths_refill(scene, &p, &work);
             if (!any_lane(p.alive))
                 break;
@@ -318,53 +356,62 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
         *rays += counts[i];
 }
 
-/* Item i of the launch renders pixels (first_item + i) * ITEM_PIXELS and following, the sample
-   blocks [first_block, end_block). */
-__kernel void path_trace(__global const FrameData *frame, __global const Sphere *spheres,
-                         __global const Planar *planars, __global const BvhNode *nodes,
-                         __global const TriangleBlock *triangle_blocks,
-                         __global const SphereBlock *sphere_blocks, __global const uint *triangles,
-                         __global const float *normals, __global const float *uvs,
-                         __global const uint *shape_of, __global const ShapeInfo *shapes,
-                         __global const float *shape_frames, __global const Material *materials,
-                         __global const EmitterInfo *emitters, __global const Light *lights,
-                         __global const LightTriangle *light_triangles,
-                         __global const AliasEntry *light_alias,
-                         __global const TextureInfo *textures, __global const uint *texels_u8,
-                         __global const float *texels_f32, __global const float *decode,
-                         __global const float *env_texels, __global const AliasEntry *env_alias,
-                         __global const float *env_density, __global const float *filter,
-                         __global FilmPixel *film, __global ItemCounters *item_counters,
-                         uint first_item, uint item_count, uint first_block, uint end_block) {
+/* The tile that item `index` of a colour renders. */
+CLR_INLINE Work tile_of_item(__global const FrameData *frame, uint index, uint colour) {
+    const uint odd_x = colour == CLR_ALL_TILES ? 0u : colour & 1u;
+    const uint odd_y = colour == CLR_ALL_TILES ? 0u : colour >> 1u;
+    const uint step = colour == CLR_ALL_TILES ? 1u : 2u;
+    const uint tiles = (frame->width + TILE - 1u) / TILE;
+    const uint columns = (tiles - odd_x + step - 1u) / step;
+    Work work;
+    work.x = (int)((index % columns * step + odd_x) * TILE);
+    work.y = (int)((index / columns * step + odd_y) * TILE);
+    work.width = min(TILE, (int)frame->width - work.x);
+    work.height = min(TILE, (int)frame->height - work.y);
+    return work;
+}
+
+/* Item i of the launch renders tile first_item + i of those of `colour` (CLR_ALL_TILES: of all),
+   the sample blocks [first_block, end_block). */
+__kernel void
+path_trace(__global const FrameData *frame, __global const Sphere *spheres,
+           __global const Planar *planars, __global const BvhNode *nodes,
+           __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
+           __global const uint *triangles, __global const float *normals, __global const float *uvs,
+           __global const uint *shape_of, __global const ShapeInfo *shapes,
+           __global const float *shape_frames, __global const Material *materials,
+           __global const EmitterInfo *emitters, __global const Light *lights,
+           __global const LightTriangle *light_triangles, __global const AliasEntry *light_alias,
+           __global const TextureInfo *textures, __global const uint *texels_u8,
+           __global const float *texels_f32, __global const float *decode,
+           __global const float *env_texels, __global const AliasEntry *env_alias,
+           __global const float *env_density, __global const float *filter,
+           __global FilmPixel *film, __global ItemCounters *item_counters, uint first_item,
+           uint item_count, uint first_block, uint end_block, uint colour) {
     if (get_global_id(0) >= item_count)
         return;
-    const uint item = first_item + (uint)get_global_id(0);
     SceneData scene = {frame,           spheres,      planars,   nodes,       triangle_blocks,
                        sphere_blocks,   triangles,    normals,   uvs,         shape_of,
                        shapes,          shape_frames, materials, emitters,    lights,
                        light_triangles, light_alias,  textures,  texels_u8,   texels_f32,
                        decode,          env_texels,   env_alias, env_density, filter};
-    const uint pixels = frame->width * frame->height;
-    const uint first_pixel = item * ITEM_PIXELS;
-    if (first_pixel >= pixels)
-        return;
-    ItemCounters counters = item_counters[item];
+    Work work = tile_of_item(frame, first_item + (uint)get_global_id(0), colour);
+    const uint tiles = (frame->width + TILE - 1u) / TILE;
+    const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE;
+    ItemCounters counters = item_counters[tile];
     uint rays = 0;
+    BlockSums block;
     for (uint b = first_block; b < end_block; ++b) {
-        Work work;
-        work.pixel = 0;
         work.first_sample = b * CLR_BLOCK_SAMPLES;
         work.end_sample = min(work.first_sample + CLR_BLOCK_SAMPLES, frame->total_samples);
-        work.sample = work.first_sample;
-        work.pixel_count = min((uint)ITEM_PIXELS, pixels - first_pixel);
-        work.first_pixel = first_pixel;
-        BlockSums block;
+        work.next_sample = work.first_sample;
+        work.next_x = work.next_y = 0;
         block_clear(&block);
         render_block(&scene, work, &block, &rays, &counters);
-        film_add(film, first_pixel, work.pixel_count, &block);
+        film_add(film, work.x, work.y, (int)frame->width, (int)frame->height, &block);
     }
     const uint low = counters.rays_low + rays;
     counters.rays_high += low < rays ? 1u : 0u;
     counters.rays_low = low;
-    item_counters[item] = counters;
+    item_counters[tile] = counters;
 }

@@ -33,8 +33,35 @@ bool has_alpha(PixelFormat format) {
 }
 
 /// Kahan's sum: what was lost is still to be taken off.
-double total(const float (&sum)[4], const float (&lost)[4], int channel) {
-    return static_cast<double>(sum[channel]) - static_cast<double>(lost[channel]);
+double total(const FilmPixel &pixel, int entry) {
+    return static_cast<double>(pixel.sum[entry]) - static_cast<double>(pixel.lost[entry]);
+}
+
+/// Entries of FilmPixel::sum.
+constexpr int entry_alpha = 3;
+constexpr int entry_weight = 4;
+constexpr int entry_weight2 = 5;
+
+/// Weighted mean of a channel: R, G, B, alpha.
+double mean(const FilmPixel &pixel, int channel) {
+    const double weight = total(pixel, entry_weight);
+    return weight != 0 ? total(pixel, channel) / weight : 0;
+}
+
+/// Standard deviation of that mean: the sum of w^2 (L - mean)^2, multiplied out.
+double deviation(const FilmPixel &pixel, int channel) {
+    const double weight = total(pixel, entry_weight);
+    if (weight == 0)
+        return 0;
+    const double m = mean(pixel, channel);
+    const double square = static_cast<double>(pixel.moment[channel]);
+    const double cross =
+        channel == entry_alpha ? square : static_cast<double>(pixel.moment[4 + channel]);
+    const double weight2 = total(pixel, entry_weight2);
+    const double sum = square - 2 * m * cross + m * m * weight2;
+    // The usual correction of n / (n - 1), with the number of samples that count.
+    const double n = weight * weight / weight2;
+    return n > 1 ? std::sqrt(std::max(sum, 0.0) * n / (n - 1)) / std::abs(weight) : 0;
 }
 
 /// An image whose pixel i is rows * colour(i), with alpha(i) behind where the format has it.
@@ -59,36 +86,22 @@ Image make_image(int width, int height, const std::vector<Rgb> &rows, bool alpha
 
 } // namespace
 
-Image film_mean(std::span<const FilmPixel> pixels, std::span<const int> samples, int width,
-                int height, PixelFormat format) {
-    const auto mean = [&](std::size_t i, int channel) {
-        return total(pixels[i].sum, pixels[i].sum_lost, channel) / std::max(samples[i], 1);
-    };
+Image film_mean(std::span<const FilmPixel> pixels, int width, int height, PixelFormat format) {
     return make_image(
         width, height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
-            return Rgb{mean(i, 0), mean(i, 1), mean(i, 2)};
+            return Rgb{mean(pixels[i], 0), mean(pixels[i], 1), mean(pixels[i], 2)};
         },
-        [&](std::size_t i) { return mean(i, 3); });
+        [&](std::size_t i) { return mean(pixels[i], entry_alpha); });
 }
 
-Image film_variance(std::span<const FilmPixel> pixels, std::span<const int> samples, int width,
-                    int height, PixelFormat format) {
-    const auto deviation = [&](std::size_t i, int channel) {
-        if (samples[i] < 2)
-            return 0.0;
-        const double n = samples[i];
-        const double mean = total(pixels[i].sum, pixels[i].sum_lost, channel) / n;
-        const double square = total(pixels[i].square, pixels[i].square_lost, channel) / n;
-        return std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1));
-    };
-    std::vector<Rgb> rows = colour_rows(format);
+Image film_variance(std::span<const FilmPixel> pixels, int width, int height, PixelFormat format) {
     Image image = make_image(
-        width, height, rows, has_alpha(format),
+        width, height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
-            return Rgb{deviation(i, 0), deviation(i, 1), deviation(i, 2)};
+            return Rgb{deviation(pixels[i], 0), deviation(pixels[i], 1), deviation(pixels[i], 2)};
         },
-        [](std::size_t) { return 0.0; });
+        [&](std::size_t i) { return deviation(pixels[i], entry_alpha); });
     for (float &value : image.f32)
         value *= value;
     return image;

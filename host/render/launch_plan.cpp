@@ -1,5 +1,7 @@
 #include "launch_plan.h"
 
+#include "shared/launch_data.h"
+
 #include <algorithm>
 
 namespace clrender {
@@ -12,20 +14,37 @@ constexpr double target_seconds = 0.1;
 
 } // namespace
 
-LaunchPlan::LaunchPlan(std::size_t items, int blocks, std::size_t tile_items, int batch_blocks,
-                       std::size_t least_items)
-    : items_(items), blocks_(blocks), least_items_(std::min(least_items, items)),
-      fixed_tile_(tile_items > 0), tile_items_(fixed_tile_ ? tile_items : least_items_),
-      batch_blocks_(std::max(batch_blocks, 1)), fixed_batch_(batch_blocks > 0) {}
+LaunchPlan::LaunchPlan(std::size_t tiles_x, std::size_t tiles_y, int blocks, bool by_colour,
+                       std::size_t tile_items, int batch, std::size_t least_items)
+    : blocks_(blocks), least_items_(least_items), fixed_items_(tile_items > 0),
+      launch_items_(fixed_items_ ? tile_items : least_items), fixed_batch_(by_colour || batch > 0),
+      batch_(by_colour ? 1 : std::max(batch, 1)) {
+    if (!by_colour) {
+        items_ = {tiles_x * tiles_y};
+        colours_ = {CLR_ALL_TILES};
+        return;
+    }
+    for (unsigned colour = 0; colour < CLR_TILE_COLOURS; ++colour) {
+        const std::size_t columns = (tiles_x + 1 - (colour & 1)) / 2;
+        const std::size_t rows = (tiles_y + 1 - (colour >> 1)) / 2;
+        if (columns * rows > 0) {
+            items_.push_back(columns * rows);
+            colours_.push_back(colour);
+        }
+    }
+}
 
 LaunchPlan::Launch LaunchPlan::next() {
-    const int end_block = std::min(first_block_ + batch_blocks_, blocks_);
-    const Launch launch{next_item_, std::min(tile_items_, items_ - next_item_), first_block_,
-                        end_block};
+    const int end_block = std::min(first_block_ + batch_, blocks_);
+    const Launch launch{next_item_, std::min(launch_items_, items_[colour_] - next_item_),
+                        first_block_, end_block, colours_[colour_]};
     next_item_ += launch.item_count;
-    if (next_item_ == items_) {
+    if (next_item_ == items_[colour_]) {
         next_item_ = 0;
-        first_block_ = end_block;
+        if (++colour_ == colours_.size()) {
+            colour_ = 0;
+            first_block_ = end_block;
+        }
     }
     return launch;
 }
@@ -36,12 +55,11 @@ void LaunchPlan::learn(const Launch &launch, double seconds) {
     const double wanted = units * target_seconds / std::max(seconds, 1e-6);
 
     // Small pictures take several blocks in one launch, but only from one pass to the next.
+    const auto items = static_cast<double>(items_[colour_]);
     if (!fixed_batch_ && next_item_ == 0)
-        batch_blocks_ = std::clamp(static_cast<int>(wanted / static_cast<double>(items_)), 1, 1024);
-    if (!fixed_tile_)
-        tile_items_ = static_cast<std::size_t>(std::clamp(wanted / batch_blocks_,
-                                                          static_cast<double>(least_items_),
-                                                          static_cast<double>(items_)));
+        batch_ = std::clamp(static_cast<int>(wanted / items), 1, 1024);
+    if (!fixed_items_)
+        launch_items_ = std::max(least_items_, static_cast<std::size_t>(wanted / batch_));
 }
 
 } // namespace clrender

@@ -6,19 +6,24 @@
 
 namespace clrender {
 
-/// Hands out the work: passes over the picture, one or more blocks of samples each, cut into runs
-/// of work-items. The picture does not depend on any of it.
+/// Hands out the work: passes over the picture, of one or more blocks of samples each, cut into
+/// runs of tiles. The picture does not depend on any of it.
 class LaunchPlan {
 public:
+    /// Tiles first_item, first_item + 1, ... of a colour, the sample blocks [first_block,
+    /// end_block).
     struct Launch {
         std::size_t first_item, item_count;
         int first_block, end_block;
+        unsigned colour;
     };
 
-    /// `blocks` blocks of samples for `items` work-items. `tile_items` and `batch_blocks`: as
-    /// RenderOptions; 0 lets the measured speed decide.
-    LaunchPlan(std::size_t items, int blocks, std::size_t tile_items, int batch_blocks,
-               std::size_t least_items);
+    /// `tiles_x` x `tiles_y` tiles, `blocks` blocks of samples. `by_colour`: samples reach into
+    /// neighbouring tiles, so tiles are launched colour by colour and block by block, which fixes
+    /// the order of all sums. `tile_items` and `batch`: as RenderOptions; 0 lets the measured speed
+    /// decide, from `least_items` on.
+    LaunchPlan(std::size_t tiles_x, std::size_t tiles_y, int blocks, bool by_colour,
+               std::size_t tile_items, int batch, std::size_t least_items);
 
     [[nodiscard]] bool done() const { return first_block_ >= blocks_; }
     /// The next launch; only while not done.
@@ -27,13 +32,15 @@ public:
     void learn(const Launch &launch, double seconds);
 
 private:
-    std::size_t items_;
+    std::vector<std::size_t> items_; ///< by colour
+    std::vector<unsigned> colours_;
     int blocks_;
     std::size_t least_items_;
-    bool fixed_tile_;
-    std::size_t tile_items_;
-    int batch_blocks_;
+    bool fixed_items_;
+    std::size_t launch_items_;
     bool fixed_batch_;
+    int batch_;
+    std::size_t colour_ = 0; ///< index into colours_
     std::size_t next_item_ = 0;
     int first_block_ = 0;
 };

@@ -18,8 +18,10 @@ namespace clrender {
 
 namespace {
 
-/// Neighbouring pixels of a work-item: enough paths to keep the lanes of a CPU full, one on a GPU.
-constexpr int cpu_item_pixels = 16;
+/// Sides of a work-item's tile: enough paths to keep the lanes of a CPU full; on a GPU one pixel,
+/// unless samples reach into their neighbours.
+constexpr int cpu_tile = CLR_LEAST_TILE;
+constexpr int gpu_tile = 1;
 
 /// Work-items of a work-group, fixed: PoCL compiles anew for each size.
 constexpr std::size_t cpu_group = 1;
@@ -49,8 +51,9 @@ public:
     PathTracer(const DeviceEntry &entry, const FlatScene &flat, const RenderOptions &options)
         : entry_(entry), flat_(flat), options_(options),
           pixels_(static_cast<std::size_t>(flat.frame.width) * flat.frame.height),
-          item_pixels_(static_cast<std::size_t>(flat.config.ITEM_PIXELS)),
-          items_((pixels_ + item_pixels_ - 1) / item_pixels_),
+          tile_(static_cast<std::size_t>(flat.config.TILE)),
+          tiles_x_((flat.frame.width + tile_ - 1) / tile_),
+          tiles_y_((flat.frame.height + tile_ - 1) / tile_),
           group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group) {
         with_device("opening the device", [&] {
             context_ = cl::Context(entry.device);
@@ -77,14 +80,13 @@ private:
     const DeviceEntry &entry_;
     const FlatScene &flat_;
     const RenderOptions &options_;
-    std::size_t pixels_, item_pixels_, items_, group_;
+    std::size_t pixels_, tile_, tiles_x_, tiles_y_, group_;
     cl::Context context_;
     cl::CommandQueue queue_;
     cl::Kernel kernel_;
     cl_uint launch_arguments_ = 0;
     std::unique_ptr<DeviceScene> scene_;
     cl::Buffer film_, counters_;
-    std::vector<int> item_samples_;
     double paths_done_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};
 };
@@ -104,7 +106,7 @@ void PathTracer::compile(RenderStats &stats) {
 
 void PathTracer::upload(RenderStats &stats) {
     const std::size_t film_bytes = pixels_ * sizeof(FilmPixel);
-    const std::size_t counter_bytes = items_ * sizeof(ItemCounters);
+    const std::size_t counter_bytes = tiles_x_ * tiles_y_ * sizeof(ItemCounters);
     scene_ =
         std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, film_bytes + counter_bytes);
     with_device("clearing the film", [&] {
@@ -118,7 +120,6 @@ void PathTracer::upload(RenderStats &stats) {
         queue_.finish();
     });
     stats.device_bytes = scene_->bytes() + film_bytes + counter_bytes;
-    item_samples_.assign(items_, 0);
 }
 
 void PathTracer::enqueue(const LaunchPlan::Launch &launch, cl::Event *event) {
@@ -128,6 +129,7 @@ void PathTracer::enqueue(const LaunchPlan::Launch &launch, cl::Event *event) {
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.item_count));
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.first_block));
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.end_block));
+        kernel_.setArg(argument++, static_cast<cl_uint>(launch.colour));
         queue_.enqueueNDRangeKernel(
             kernel_, cl::NullRange,
             cl::NDRange(round_up(std::max<std::size_t>(launch.item_count, 1), group_)),
@@ -144,13 +146,12 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
     plan.learn(pending.launch, std::chrono::duration<double>(now - start).count());
     last_finish_ = now;
 
-    const int samples = std::min(pending.launch.end_block * CLR_BLOCK_SAMPLES, spp);
-    const std::size_t end = pending.launch.first_item + pending.launch.item_count;
-    for (std::size_t item = pending.launch.first_item; item < end; ++item) {
-        const std::size_t own = std::min(item_pixels_, pixels_ - item * item_pixels_);
-        paths_done_ += static_cast<double>(own) * (samples - item_samples_[item]);
-        item_samples_[item] = samples;
-    }
+    // An estimate for the progress bar: tiles at the border are smaller.
+    const int first = pending.launch.first_block * CLR_BLOCK_SAMPLES;
+    const int end = std::min(pending.launch.end_block * CLR_BLOCK_SAMPLES, spp);
+    const double share =
+        static_cast<double>(pending.launch.item_count) / static_cast<double>(tiles_x_ * tiles_y_);
+    paths_done_ += share * static_cast<double>(pixels_) * (end - first);
     if (options_.on_progress)
         options_.on_progress(paths_done_);
 }
@@ -159,15 +160,15 @@ bool PathTracer::render(int spp, RenderStats &stats) {
     Stopwatch watch;
     // PoCL compiles at the first launch; a launch without work makes that a part of compiling.
     cl::Event event;
-    enqueue({0, 0, 0, 0}, &event);
+    enqueue({0, 0, 0, 0, CLR_ALL_TILES}, &event);
     with_device("compiling the kernel", [&] { event.wait(); });
     stats.seconds_compile += watch.lap();
 
     const int blocks = (spp + CLR_BLOCK_SAMPLES - 1) / CLR_BLOCK_SAMPLES;
     const std::size_t least_items =
         round_up(static_cast<std::size_t>(entry_.compute_units) * 4, group_);
-    LaunchPlan plan(items_, blocks, static_cast<std::size_t>(options_.tile), options_.batch,
-                    least_items);
+    LaunchPlan plan(tiles_x_, tiles_y_, blocks, flat_.config.FILTER == 3,
+                    static_cast<std::size_t>(options_.tile), options_.batch, least_items);
     std::deque<Pending> pending;
     bool stopped = false;
     while (!pending.empty() || (!plan.done() && !stopped)) {
@@ -187,19 +188,16 @@ bool PathTracer::render(int spp, RenderStats &stats) {
 
 void PathTracer::read(RenderResult &result, PixelFormat format) {
     std::vector<FilmPixel> film(pixels_);
-    std::vector<ItemCounters> counters(items_);
+    std::vector<ItemCounters> counters(tiles_x_ * tiles_y_);
     with_device("reading the film", [&] {
         queue_.enqueueReadBuffer(film_, CL_TRUE, 0, pixels_ * sizeof(FilmPixel), film.data());
-        queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, items_ * sizeof(ItemCounters),
+        queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, counters.size() * sizeof(ItemCounters),
                                  counters.data());
     });
-    std::vector<int> samples(pixels_);
-    for (std::size_t i = 0; i < pixels_; ++i)
-        samples[i] = item_samples_[i / item_pixels_];
     const auto width = static_cast<int>(flat_.frame.width);
     const auto height = static_cast<int>(flat_.frame.height);
-    result.image = film_mean(film, samples, width, height, format);
-    result.variance = film_variance(film, samples, width, height, format);
+    result.image = film_mean(film, width, height, format);
+    result.variance = film_variance(film, width, height, format);
 
     RenderStats &stats = result.stats;
     stats.paths = paths_done_;
@@ -230,7 +228,7 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     FlatScene flat = flatten(scene, flatten_options);
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
-    flat.config.ITEM_PIXELS = entry.is_cpu ? cpu_item_pixels : 1;
+    flat.config.TILE = entry.is_cpu || flat.config.FILTER == 3 ? cpu_tile : gpu_tile;
     flat.frame.seed = options.seed;
     flat.frame.total_samples = static_cast<uint>(spp);
     stats.lanes = flat.config.LANES;

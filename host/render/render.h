@@ -41,7 +41,7 @@ struct RenderStats {
 };
 
 /// `image` has the channels of the film's pixel format; `variance` has as many and holds the
-/// estimated variance of each pixel's mean (of luminance: an upper bound; of alpha: 0).
+/// estimated variance of each pixel's mean (of luminance: an upper bound).
 struct RenderResult {
     Image image;
     Image variance;

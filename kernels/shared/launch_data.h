@@ -51,15 +51,22 @@ typedef struct {
 } FrameData;
 CLR_STATIC_SIZE(FrameData, 256);
 
-/* Sums over the samples of a pixel: R, G, B, alpha and the squares of R, G, B (the last entry is
-   unused), each with the compensation of Kahan's summation. */
+/* Sums over the samples of a pixel, w being the filter's weight of a sample: of w R, w G, w B,
+   w alpha, w and w^2 (the last two of eight are unused), with the compensation of Kahan's
+   summation; and, for the variance, of w^2 R^2, w^2 G^2, w^2 B^2, w^2 alpha, w^2 R, w^2 G, w^2 B.
+ */
 typedef struct {
-    float sum[4];
-    float sum_lost[4];
-    float square[4];
-    float square_lost[4];
+    float sum[8];
+    float lost[8];
+    float moment[8];
 } FilmPixel;
-CLR_STATIC_SIZE(FilmPixel, 64);
+CLR_STATIC_SIZE(FilmPixel, 96);
+
+/* Tiles whose splats cannot meet have the same colour: even or odd column and row of the tile. */
+#define CLR_TILE_COLOURS 4
+#define CLR_ALL_TILES 4 /* "of every colour" */
+/* The smallest tile that is used with splatting. */
+#define CLR_LEAST_TILE 8
 
 /* What one work-item counted, over all launches. */
 typedef struct {
