@@ -32,7 +32,7 @@ const char *const small_scene = R"(<scene version="3.0.0">
 
 } // namespace
 
-TEST_CASE("--version and --help") {
+TEST_CASE("The version and the help are printed") {
     const TempFolder folder;
     const ProgramResult version = run_clrender(folder.path(), {"--version"});
     CHECK(version.exit_code == 0);
@@ -48,7 +48,7 @@ TEST_CASE("--version and --help") {
         CHECK_THAT(help.out, Catch::Contains(option));
 }
 
-TEST_CASE("--list-devices names at least one device") {
+TEST_CASE("The list of devices names at least one device") {
     const TempFolder folder;
     const ProgramResult result = run_clrender(folder.path(), {"--list-devices"});
     CHECK(result.exit_code == 0);
@@ -84,7 +84,7 @@ TEST_CASE("Wrong input: exit code 2, one line with the place, no picture") {
     CHECK_FALSE(folder.has("bad.exr"));
 }
 
-TEST_CASE("--check reads the scene and writes nothing") {
+TEST_CASE("A check reads the scene and writes nothing") {
     const TempFolder folder;
     folder.write("scene.xml", small_scene);
     CHECK(run_clrender(folder.path(), {"--check", "scene.xml"}).exit_code == 0);
@@ -127,7 +127,7 @@ TEST_CASE("A -D that nothing uses is a warning") {
     CHECK_THAT(result.err, !Catch::Contains("power"));
 }
 
-TEST_CASE("--stats holds every figure of the contract") {
+TEST_CASE("The statistics hold every figure of the contract") {
     const TempFolder folder;
     folder.write("scene.xml", small_scene);
     REQUIRE(run_clrender(folder.path(), {"scene.xml", "-o", "a.pfm", "--stats", "s.json", "-r",

@@ -181,7 +181,7 @@ TEST_CASE("A mistake ends with exit code 2") {
     }
 }
 
-TEST_CASE("--help and --version end with exit code 0") {
+TEST_CASE("Help and version end with exit code 0") {
     for (const char *argument : {"--help", "-h", "--version"}) {
         const ParseResult result = parse({argument});
         CHECK_FALSE(result.options.has_value());
