@@ -2,30 +2,12 @@
 
 #include "render/render.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include <unistd.h>
 
 namespace clrender::test {
-
-namespace {
-
-/// The renderer states no variance for alpha. Alpha is 0 or 1 in each sample, so that the mean a of
-/// n of them has the variance a (1 - a) / n; a filter averages more samples, by its factor.
-void add_alpha_variance(MeasuredImage &picture, int spp, const ReconstructionFilter &filter) {
-    const auto channels = static_cast<std::size_t>(picture.mean.channels);
-    if (channels % 2 != 0)
-        return;
-    const double samples = spp * correlation_factor(filter);
-    for (std::size_t i = channels - 1; i < picture.mean.f32.size(); i += channels) {
-        const double a = std::clamp(double{picture.mean.f32[i]}, 0., 1.);
-        picture.variance.f32[i] = static_cast<float>(a * (1 - a) / samples);
-    }
-}
-
-} // namespace
 
 MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     RenderOptions options;
@@ -37,7 +19,6 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.tile = how.tile_items;
     RenderResult result = render_scene(scene, options);
     MeasuredImage measured{std::move(result.image), std::move(result.variance), {}};
-    add_alpha_variance(measured, options.spp, scene.film.filter);
     measured.mean_se = standard_error_of_mean(measured.variance, scene.film.filter);
     return measured;
 }
