@@ -82,7 +82,6 @@ void add_mesh(Flattening &work, std::size_t index, const Light &base, double rad
     const std::size_t first = work.first_triangle_of_shape.at(emitter.shape);
     const std::size_t count = shape.kind == ShapeKind::mesh ? shape.mesh->triangles.size() : 2;
     const bool by_vertex = !flat.triangles.empty();
-    flat.config.HAS_TRIANGLE_LIGHTS = 1;
     for (std::size_t t = first; t < first + count; ++t) {
         const TriangleCorners &corner = work.corners[t];
         const glm::vec3 e1 = corner[1] - corner[0];
@@ -143,7 +142,6 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         std::copy_n(sphere.center, 3, light.position);
         std::copy_n(sphere.center, 3, info.center);
         light.area = info.radius = sphere.radius;
-        flat.config.HAS_SPHERE_LIGHTS = 1;
         // A sphere that shines inwards is met by chance only: nothing outside sees it.
         if (sphere.radius > 0)
             list.add(light, 4 * pi * pi * sphere.radius * sphere.radius * radiance, index);
@@ -152,7 +150,6 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     light.prim -= static_cast<uint>(flat.config.SPHERE_COUNT);
     info.kind = light.kind = CLR_LIGHT_PLANAR;
     light.area = flat.planars[light.prim].area;
-    flat.config.HAS_PLANAR_LIGHTS = 1;
     list.add(light, pi * light.area * radiance, index);
 }
 
@@ -199,7 +196,6 @@ void flatten_lights(Flattening &work) {
     for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {
         switch (work.scene.emitters[i].kind) {
         case EmitterKind::point:
-            flat.config.HAS_POINT_LIGHTS = 1;
             add_point(work, i, list);
             break;
         case EmitterKind::area:
@@ -227,6 +223,12 @@ void flatten_lights(Flattening &work) {
             flat.frame.env_probability = light.probability;
         else if (light.kind != CLR_LIGHT_POINT)
             info.density = static_cast<float>(probability[i] / light.area);
+    }
+    for (const Light &light : list.lights) {
+        flat.config.HAS_POINT_LIGHTS |= light.kind == CLR_LIGHT_POINT ? 1 : 0;
+        flat.config.HAS_SPHERE_LIGHTS |= light.kind == CLR_LIGHT_SPHERE ? 1 : 0;
+        flat.config.HAS_PLANAR_LIGHTS |= light.kind == CLR_LIGHT_PLANAR ? 1 : 0;
+        flat.config.HAS_TRIANGLE_LIGHTS |= light.kind == CLR_LIGHT_TRIANGLE ? 1 : 0;
     }
     flat.lights = list.lights;
     flat.frame.light_count = static_cast<uint>(flat.lights.size());
