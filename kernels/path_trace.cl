@@ -27,11 +27,7 @@
 
 /* Lanes that have to be idle before new samples are started: starting costs the same for one lane
    as for all. */
-#if LANES >= 8
-#define REFILL_LANES 2
-#else
-#define REFILL_LANES 1
-#endif
+#define REFILL_LANES ((LANES + 1) / 2)
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
    of the last direction, where the last vertex was not specular; `eta2` undoes the compression of
@@ -111,11 +107,16 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     p->self = ipick(fresh, int_of(-1), p->self);
     p->t_max = pick(fresh, ray.t_far, p->t_max);
     p->throughput = v3_pick(fresh, v3(ray.weight, ray.weight, ray.weight), p->throughput);
+#if FILTER == 1
     p->weight = pick(fresh, ray.weight, p->weight);
+#elif FILTER == 3
     p->dx = pick(fresh, ray.dx, p->dx);
     p->dy = pick(fresh, ray.dy, p->dy);
+#endif
     p->radiance = v3_pick(fresh, v3_of(0.0f, 0.0f, 0.0f), p->radiance);
+#if HAS_ALPHA
     p->alpha = pick(fresh, ray.weight * f->env_alpha, p->alpha);
+#endif
     p->prev_specular |= fresh;
     p->eta2 = pick(fresh, real_of(1.0f), p->eta2);
     p->depth = ipick(fresh, int_of(0), p->depth);
@@ -213,17 +214,22 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
                                  vec3 albedo, int_l prim, mask_l diffuse) {
     vec3 o = ray_origin(surface, n);
-    LightSample light = light_sample(scene, o, prim, p->sampler, BOUNCE_LIGHT, diffuse);
+    LightSample light = light_sample(scene, o, p->sampler, BOUNCE_LIGHT, diffuse);
     real cosine = v3_dot(n, light.wi);
     mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
     if (!any_lane(wanted))
         return;
     p->rays -= as_uint_l(wanted);
-    mask_l lit = wanted & ~scene_occluded(scene, o, light.wi, prim, light.t_max, wanted);
+    mask_l lit =
+        wanted & ~scene_occluded(scene, o, light.wi, prim, light.prim, light.t_max, wanted);
     real bsdf_pdf = cosine * CLR_INV_PI;
-    real weight = bsdf_pdf / light.pdf;
 #if STRATEGY == 0
-    weight *= pick(light.delta, real_of(1.0f), mis_weight(light.pdf, bsdf_pdf));
+    real weight = bsdf_pdf * mis_weight_over_pdf(light.pdf, bsdf_pdf);
+#if HAS_POINT_LIGHTS
+    weight = pick(light.delta, bsdf_pdf / light.pdf, weight);
+#endif
+#else
+    real weight = bsdf_pdf / light.pdf;
 #endif
     paths_add_radiance(p, v3_mul(albedo, light.radiance), weight, lit);
 }
@@ -243,13 +249,22 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
 }
 #endif
 
+/* Where a ray ends: only camera rays may be clipped. */
+#if HAS_CLIP || INTEGRATOR == 1
+#define CLIP_END(p) ((p)->t_max)
+#else
+#define CLIP_END(p) real_of(INFINITY)
+#endif
+
 /* From one vertex to the next. */
 CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     __global const FrameData *f = scene->frame;
     p->rays -= as_uint_l(p->alive);
-    Hit hit = scene_closest(scene, p->o, p->d, p->self, p->t_max, p->alive);
+    Hit hit = scene_closest(scene, p->o, p->d, p->self, CLIP_END(p), p->alive);
     mask_l met = p->alive & ige(hit.prim, int_of(0));
+#if HAS_CLIP || INTEGRATOR == 1
     p->t_max = real_of(INFINITY);
+#endif
 
 #if INTEGRATOR == 1
     /* The depth is measured from the near clip plane, as in Mitsuba. */
@@ -274,6 +289,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     p->self = ipick(through, hit.prim, p->self);
     met &= ~through;
 #endif
+#if HAS_ALPHA
     /* The camera's path has the filter's weight as its throughput until its first bounce. */
     mask_l seen = met & ieq(p->depth, int_of(0));
 #if HAS_AREA_EMITTERS
@@ -281,6 +297,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
         seen &= ige(surface.emitter, int_of(0)) & lt(v3_dot(surface.ns, p->d), real_of(0.0f));
 #endif
     p->alpha = pick(seen, p->throughput.x, p->alpha);
+#endif
 #if HAS_AREA_EMITTERS
     paths_add_emission(scene, p, surface, hit.t, met);
 #endif
@@ -312,16 +329,22 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     BsdfSample sample = bsdf_sample(
         bsdf, p->d, n, cosine, back, sampler_get(p->sampler, BOUNCE_LOBE),
         sampler_get(p->sampler, BOUNCE_BSDF), sampler_get(p->sampler, BOUNCE_BSDF + 1u));
-    p->throughput = v3_pick(going, v3_mul(p->throughput, sample.weight), p->throughput);
-    p->o = v3_pick(going, ray_origin(surface, sample.wo), p->o);
-    p->d = v3_pick(going, v3_normalize(sample.wo), p->d);
-    p->self = ipick(going, hit.prim, p->self);
-    p->prev_pdf = pick(going, sample.pdf, p->prev_pdf);
-    p->prev_specular = ipick(going, sample.specular, p->prev_specular);
-    p->eta2 = pick(going, p->eta2 * sample.eta * sample.eta, p->eta2);
-    p->depth = ipick(going, p->depth + 1, p->depth);
+    /* Lanes that have ended may go on computing nonsense: nothing of it is looked at. */
+#if HIDE_EMITTERS && HAS_AREA_EMITTERS
+    mask_l moved = ~through;
+#else
+    mask_l moved = all_lanes();
+#endif
+    p->throughput = v3_pick(moved, v3_mul(p->throughput, sample.weight), p->throughput);
+    p->o = v3_pick(moved, ray_origin(surface, sample.wo), p->o);
+    p->d = v3_pick(moved, renormalize(sample.wo), p->d);
+    p->self = ipick(moved, hit.prim, p->self);
+    p->prev_pdf = pick(moved, sample.pdf, p->prev_pdf);
+    p->prev_specular = ipick(moved, sample.specular, p->prev_specular);
+    p->eta2 = pick(moved, p->eta2 * sample.eta * sample.eta, p->eta2);
+    p->depth -= moved;
     vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
-    p->alive &= ~going | gt(v3_max(size), real_of(0.0f));
+    p->alive &= ~moved | gt(v3_max(size), real_of(0.0f));
 #if HAS_ROULETTE
     paths_roulette(scene, p);
 #endif
@@ -338,7 +361,8 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.pixel = p.depth = int_of(0);
     p.self = int_of(-1);
     p.o = p.d = p.throughput = p.radiance = v3_of(0.0f, 0.0f, 0.0f);
-    p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.weight = p.dx = p.dy = real_of(0.0f);
+    p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
+    p.weight = real_of(1.0f);
     for (;;) {
         const int idle = LANES - count_lanes(p.alive);
         if (idle == LANES || (idle >= REFILL_LANES && work_left(&work))) {
@@ -375,26 +399,28 @@ CLR_INLINE Work tile_of_item(__global const FrameData *frame, uint index, uint c
    the sample blocks [first_block, end_block). */
 __kernel void
 path_trace(__global const FrameData *frame, __global const Sphere *spheres,
-           __global const Planar *planars, __global const BvhNode *nodes,
-           __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
-           __global const uint *triangles, __global const float *normals, __global const float *uvs,
-           __global const uint *shape_of, __global const ShapeInfo *shapes,
-           __global const float *shape_frames, __global const Material *materials,
-           __global const EmitterInfo *emitters, __global const Light *lights,
-           __global const LightTriangle *light_triangles, __global const AliasEntry *light_alias,
-           __global const TextureInfo *textures, __global const uint *texels_u8,
-           __global const float *texels_f32, __global const float *decode,
-           __global const float *env_texels, __global const AliasEntry *env_alias,
-           __global const float *env_density, __global const float *filter,
-           __global FilmPixel *film, __global ItemCounters *item_counters, uint first_item,
-           uint item_count, uint first_block, uint end_block, uint colour) {
+           __global const Planar *planars, __global const PrimitiveRecord *records,
+           __global const BvhNode *nodes, __global const TriangleBlock *triangle_blocks,
+           __global const SphereBlock *sphere_blocks, __global const uint *triangles,
+           __global const float *normals, __global const float *uvs, __global const uint *shape_of,
+           __global const ShapeInfo *shapes, __global const float *shape_frames,
+           __global const Material *materials, __global const EmitterInfo *emitters,
+           __global const Light *lights, __global const LightTriangle *light_triangles,
+           __global const AliasEntry *light_alias, __global const TextureInfo *textures,
+           __global const uint *texels_u8, __global const float *texels_f32,
+           __global const float *decode, __global const float *env_texels,
+           __global const AliasEntry *env_alias, __global const float *env_density,
+           __global const float *filter, __global FilmPixel *film,
+           __global ItemCounters *item_counters, uint first_item, uint item_count, uint first_block,
+           uint end_block, uint colour) {
     if (get_global_id(0) >= item_count)
         return;
-    SceneData scene = {frame,           spheres,      planars,   nodes,       triangle_blocks,
-                       sphere_blocks,   triangles,    normals,   uvs,         shape_of,
-                       shapes,          shape_frames, materials, emitters,    lights,
-                       light_triangles, light_alias,  textures,  texels_u8,   texels_f32,
-                       decode,          env_texels,   env_alias, env_density, filter};
+    SceneData scene = {frame,           spheres,         planars,      records,   nodes,
+                       triangle_blocks, sphere_blocks,   triangles,    normals,   uvs,
+                       shape_of,        shapes,          shape_frames, materials, emitters,
+                       lights,          light_triangles, light_alias,  textures,  texels_u8,
+                       texels_f32,      decode,          env_texels,   env_alias, env_density,
+                       filter};
     Work work = tile_of_item(frame, first_item + (uint)get_global_id(0), colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;
     const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE;

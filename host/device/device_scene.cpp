@@ -21,6 +21,7 @@ std::vector<View> views(const FlatScene &flat) {
     return {{&flat.frame, sizeof(flat.frame)},
             view(flat.spheres),
             view(flat.planars),
+            view(flat.records),
             view(flat.bvh.nodes),
             view(flat.bvh.triangle_blocks),
             view(flat.bvh.sphere_blocks),

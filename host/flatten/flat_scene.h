@@ -31,6 +31,7 @@ struct FlatScene {
     Placement placement;
     std::vector<Sphere> spheres;
     std::vector<Planar> planars;
+    std::vector<PrimitiveRecord> records;
     Bvh bvh;
     std::vector<uint> triangles;
     std::vector<float> normals;

@@ -50,6 +50,11 @@ void flatten_film(Flattening &work) {
     f.height = static_cast<uint>(film.crop_height);
     f.crop_x = film.crop_x;
     f.crop_y = film.crop_y;
+    const PixelFormat format = film.pixel_format;
+    flat.config.HAS_ALPHA = format == PixelFormat::luminance_alpha || format == PixelFormat::rgba ||
+                                    format == PixelFormat::xyza
+                                ? 1
+                                : 0;
     f.filter_radius = static_cast<float>(filter_radius(film.filter));
     if (work.options.pixel_centers)
         flat.config.FILTER = 2;

@@ -112,13 +112,38 @@ Material flatten_bsdf(Flattening &work, const Bsdf &bsdf) {
         m.kind = CLR_BSDF_DIELECTRIC;
         m.texture = flatten_texture(work, bsdf.specular_reflectance, one, m.color);
         m.texture2 = flatten_texture(work, bsdf.specular_transmittance, one, m.color2);
-        store(m.eta, Rgb{bsdf.int_ior / bsdf.ext_ior});
+        store(m.eta, Rgb{bsdf.int_ior / bsdf.ext_ior, bsdf.ext_ior / bsdf.int_ior, 0});
         config.HAS_DIELECTRIC = 1;
         break;
     case BsdfKind::twosided:
         break;
     }
     return m;
+}
+
+/// Where all dielectrics have the same tint, or the same index, every material gets it, and the
+/// kernel need not ask which one it has hit.
+void share_dielectric_fields(FlatScene &flat) {
+    const auto is_dielectric = [](const Material &m) { return m.kind == CLR_BSDF_DIELECTRIC; };
+    const auto first = std::find_if(flat.materials.begin(), flat.materials.end(), is_dielectric);
+    if (first == flat.materials.end())
+        return;
+    const Material model = *first;
+    int &shades = flat.config.MATERIAL_SHADES;
+    for (const Material &m : flat.materials) {
+        if (!is_dielectric(m))
+            continue;
+        if (!std::equal(m.color2, m.color2 + 3, model.color2))
+            shades |= 1;
+        if (m.eta[0] != model.eta[0])
+            shades |= 2;
+    }
+    for (Material &m : flat.materials) {
+        if ((shades & 1) == 0)
+            std::copy_n(model.color2, 3, m.color2);
+        if ((shades & 2) == 0 && m.kind != CLR_BSDF_CONDUCTOR)
+            std::copy_n(model.eta, 3, m.eta);
+    }
 }
 
 } // namespace
@@ -189,9 +214,7 @@ void flatten_materials(Flattening &work) {
             throw InputError(shape.where, "more than 65534 different BSDFs are not supported");
         work.sides_of_bsdf[shape.bsdf] = front | back << 16;
     }
-    constexpr std::size_t few = 16;
-    if (flat.materials.size() <= few)
-        flat.config.MATERIAL_COUNT = static_cast<int>(flat.materials.size());
+    share_dielectric_fields(flat);
 }
 
 } // namespace clrender

@@ -140,12 +140,43 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
     work.vertex_count += positions.size();
 }
 
+/// True if no ray can start inside the sphere: it lets none through, and the camera is outside. A
+/// path cannot get in without meeting the surface.
+bool is_solid(const Scene &scene, const Shape &shape) {
+    const auto transmits = [&](int bsdf) {
+        return bsdf != none &&
+               scene.bsdfs[static_cast<std::size_t>(bsdf)].kind == BsdfKind::dielectric;
+    };
+    const Bsdf &bsdf = scene.bsdfs[static_cast<std::size_t>(shape.bsdf)];
+    if (transmits(shape.bsdf) || transmits(bsdf.front) || transmits(bsdf.back) ||
+        (shape.emitter != none && scene.integrator.hide_emitters))
+        return false;
+    const double distance =
+        glm::length(glm::dvec3(shape.to_world[3]) - glm::dvec3(scene.sensor.to_world[3]));
+    constexpr double margin = 1.0001;
+    return distance > sphere_radius(shape) * margin + scene.sensor.aperture_radius;
+}
+
+/// The spheres' shapes in the order of their primitives: solid ones first.
+std::vector<std::size_t> order_spheres(const Scene &scene, int *solid_count) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        if (scene.shapes[i].kind == ShapeKind::sphere)
+            order.push_back(i);
+    const auto others = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
+        return is_solid(scene, scene.shapes[i]);
+    });
+    *solid_count = static_cast<int>(others - order.begin());
+    return order;
+}
+
 void flatten_spheres(Flattening &work, bool in_bvh, std::vector<BvhSphere> &bvh_spheres) {
     FlatScene &flat = work.flat;
-    for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
+    int solid_count = 0;
+    const std::vector<std::size_t> order = order_spheres(work.scene, &solid_count);
+    flat.config.SOLID_COUNT = in_bvh ? 0 : solid_count;
+    for (const std::size_t i : order) {
         const Shape &shape = work.scene.shapes[i];
-        if (shape.kind != ShapeKind::sphere)
-            continue;
         const uint shape_number = append_shape(shape, work);
         const Sphere s = flatten_sphere(shape, flat.placement);
         flat.spheres.push_back(s);
@@ -197,6 +228,27 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
     flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
 }
 
+/// One record for each lane-wise primitive, in their order.
+void make_records(FlatScene &flat) {
+    const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
+    for (std::size_t i = 0; i < spheres + flat.planars.size(); ++i) {
+        PrimitiveRecord r{};
+        if (i < spheres) {
+            std::copy_n(flat.spheres[i].center, 3, r.place);
+            r.size = flat.spheres[i].radius;
+        } else {
+            const Planar &p = flat.planars[i - spheres];
+            std::copy_n(p.normal, 3, r.place);
+            for (int c = 0; c < 3; ++c)
+                r.size += p.normal[c] * p.origin[c];
+            r.is_disk = p.is_disk != 0 ? CLR_NONE : 0;
+        }
+        r.materials = flat.shapes[i].materials;
+        r.emitter = flat.shapes[i].emitter;
+        flat.records.push_back(r);
+    }
+}
+
 } // namespace
 
 void flatten_shapes(Flattening &work) {
@@ -221,6 +273,7 @@ void flatten_shapes(Flattening &work) {
     if (spheres_in_bvh)
         flatten_spheres(work, true, bvh_spheres);
 
+    make_records(flat);
     flat.config.HAS_BVH_SPHERES = bvh_spheres.empty() ? 0 : 1;
     if (work.corners.empty() && bvh_spheres.empty())
         return;

@@ -47,6 +47,18 @@ typedef struct {
 } ShapeInfo;
 CLR_STATIC_SIZE(ShapeInfo, 8);
 
+/* What a hit on a lane-wise primitive needs, in one load: a sphere's centre and radius or a
+   planar's normal and its distance from the origin, and the shape's info. */
+typedef struct {
+    float place[3]; /* centre or normal */
+    float size;     /* radius or distance */
+    uint materials;
+    uint emitter;
+    uint is_disk;
+    uint pad;
+} PrimitiveRecord;
+CLR_STATIC_SIZE(PrimitiveRecord, 32);
+
 #define CLR_BSDF_DIFFUSE 0u
 #define CLR_BSDF_CONDUCTOR 1u
 #define CLR_BSDF_DIELECTRIC 2u
@@ -54,7 +66,7 @@ CLR_STATIC_SIZE(ShapeInfo, 8);
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
-   Dielectric: eta[0] is interior over exterior index. */
+   Dielectric: eta[0] is interior over exterior index, eta[1] its inverse. */
 typedef struct {
     float color[3];
     uint kind;
