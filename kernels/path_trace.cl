@@ -399,28 +399,28 @@ CLR_INLINE Work tile_of_item(__global const FrameData *frame, uint index, uint c
    the sample blocks [first_block, end_block). */
 __kernel void
 path_trace(__global const FrameData *frame, __global const Sphere *spheres,
-           __global const Planar *planars, __global const PrimitiveRecord *records,
-           __global const BvhNode *nodes, __global const TriangleBlock *triangle_blocks,
-           __global const SphereBlock *sphere_blocks, __global const uint *triangles,
-           __global const float *normals, __global const float *uvs, __global const uint *shape_of,
-           __global const ShapeInfo *shapes, __global const float *shape_frames,
-           __global const Material *materials, __global const EmitterInfo *emitters,
-           __global const Light *lights, __global const LightTriangle *light_triangles,
-           __global const AliasEntry *light_alias, __global const TextureInfo *textures,
-           __global const uint *texels_u8, __global const float *texels_f32,
-           __global const float *decode, __global const float *env_texels,
-           __global const AliasEntry *env_alias, __global const float *env_density,
-           __global const float *filter, __global FilmPixel *film,
-           __global ItemCounters *item_counters, uint first_item, uint item_count, uint first_block,
-           uint end_block, uint colour) {
+           __global const SphereTest *sphere_tests, __global const Planar *planars,
+           __global const PrimitiveRecord *records, __global const BvhNode *nodes,
+           __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
+           __global const uint *triangles, __global const float *normals, __global const float *uvs,
+           __global const uint *shape_of, __global const ShapeInfo *shapes,
+           __global const float *shape_frames, __global const Material *materials,
+           __global const EmitterInfo *emitters, __global const Light *lights,
+           __global const LightTriangle *light_triangles, __global const AliasEntry *light_alias,
+           __global const TextureInfo *textures, __global const uint *texels_u8,
+           __global const float *texels_f32, __global const float *decode,
+           __global const float *env_texels, __global const AliasEntry *env_alias,
+           __global const float *env_density, __global const float *filter,
+           __global FilmPixel *film, __global ItemCounters *item_counters, uint first_item,
+           uint item_count, uint first_block, uint end_block, uint colour) {
     if (get_global_id(0) >= item_count)
         return;
-    SceneData scene = {frame,           spheres,         planars,      records,   nodes,
-                       triangle_blocks, sphere_blocks,   triangles,    normals,   uvs,
-                       shape_of,        shapes,          shape_frames, materials, emitters,
-                       lights,          light_triangles, light_alias,  textures,  texels_u8,
-                       texels_f32,      decode,          env_texels,   env_alias, env_density,
-                       filter};
+    SceneData scene = {frame,       spheres,         sphere_tests,    planars,      records,
+                       nodes,       triangle_blocks, sphere_blocks,   triangles,    normals,
+                       uvs,         shape_of,        shapes,          shape_frames, materials,
+                       emitters,    lights,          light_triangles, light_alias,  textures,
+                       texels_u8,   texels_f32,      decode,          env_texels,   env_alias,
+                       env_density, filter};
     Work work = tile_of_item(frame, first_item + (uint)get_global_id(0), colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;
     const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE;

@@ -20,6 +20,7 @@ template <typename T> View view(const std::vector<T> &array) {
 std::vector<View> views(const FlatScene &flat) {
     return {{&flat.frame, sizeof(flat.frame)},
             view(flat.spheres),
+            view(flat.sphere_tests),
             view(flat.planars),
             view(flat.records),
             view(flat.bvh.nodes),

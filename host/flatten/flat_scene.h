@@ -30,6 +30,7 @@ struct FlatScene {
     FrameData frame{};
     Placement placement;
     std::vector<Sphere> spheres;
+    std::vector<SphereTest> sphere_tests;
     std::vector<Planar> planars;
     std::vector<PrimitiveRecord> records;
     Bvh bvh;

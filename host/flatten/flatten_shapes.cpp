@@ -228,9 +228,13 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
     flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
 }
 
-/// One record for each lane-wise primitive, in their order.
+/// What rays test and find of the lane-wise primitives, in their order.
 void make_records(FlatScene &flat) {
     const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
+    for (std::size_t i = 0; i < 2 * spheres; ++i) {
+        const Sphere &s = flat.spheres[i % spheres];
+        flat.sphere_tests.push_back({{s.center[0], s.center[1], s.center[2]}, s.radius * s.radius});
+    }
     for (std::size_t i = 0; i < spheres + flat.planars.size(); ++i) {
         PrimitiveRecord r{};
         if (i < spheres) {

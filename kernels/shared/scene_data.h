@@ -20,6 +20,13 @@ typedef struct {
 } Sphere;
 CLR_STATIC_SIZE(Sphere, 16);
 
+/* What a ray is tested against. */
+typedef struct {
+    float center[3];
+    float radius2;
+} SphereTest;
+CLR_STATIC_SIZE(SphereTest, 16);
+
 /* A rectangle or a disk: points origin + a du + b dv, with |a|, |b| <= 1 or a^2 + b^2 <= 1.
    `ra` and `rb` are the dual vectors: a = ra . (p - origin). */
 typedef struct {
