@@ -235,6 +235,10 @@ void flatten_lights(Flattening &work) {
     if (!flat.lights.empty()) {
         flat.light_alias = build_alias_table(probability);
         flat.config.LIGHT_COUNT = flat.lights.size() == 1 ? 1 : -1;
+        const Light &first = flat.lights.front();
+        if (flat.lights.size() == 1 && first.kind == CLR_LIGHT_SPHERE &&
+            flat.config.HAS_BVH_SPHERES == 0)
+            flat.config.SOLE_LIGHT_SPHERE = static_cast<int>(first.prim);
     }
 }
 
