@@ -412,7 +412,7 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
            __global const float *env_texels, __global const AliasEntry *env_alias,
            __global const float *env_density, __global const float *filter,
            __global FilmPixel *film, __global ItemCounters *item_counters, uint first_item,
-           uint item_count, uint first_block, uint end_block, uint colour) {
+           uint item_count, uint first_block, uint end_block, uint colour, uint stride) {
     if (get_global_id(0) >= item_count)
         return;
     SceneData scene = {frame,       spheres,         sphere_tests,    planars,      records,
@@ -421,7 +421,8 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
                        emitters,    lights,          light_triangles, light_alias,  textures,
                        texels_u8,   texels_f32,      decode,          env_texels,   env_alias,
                        env_density, filter};
-    Work work = tile_of_item(frame, first_item + (uint)get_global_id(0), colour);
+    const uint dealt = (uint)((ulong)get_global_id(0) * stride % item_count);
+    Work work = tile_of_item(frame, first_item + dealt, colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;
     const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE;
     ItemCounters counters = item_counters[tile];

@@ -157,8 +157,13 @@ bool is_solid(const Scene &scene, const Shape &shape) {
     return distance > sphere_radius(shape) * margin + scene.sensor.aperture_radius;
 }
 
-/// The spheres' shapes in the order of their primitives: solid ones first.
-std::vector<std::size_t> order_spheres(const Scene &scene, int *solid_count) {
+/// Spheres from this radius on, in the renderer's units, are as large as what the camera is near to.
+constexpr double wide_radius = 0.5;
+
+/// The spheres' shapes in the order of their primitives: solid ones first, of these those that are
+/// wide before the others.
+std::vector<std::size_t> order_spheres(const Flattening &work, KernelConfig &config) {
+    const Scene &scene = work.scene;
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < scene.shapes.size(); ++i)
         if (scene.shapes[i].kind == ShapeKind::sphere)
@@ -166,15 +171,19 @@ std::vector<std::size_t> order_spheres(const Scene &scene, int *solid_count) {
     const auto others = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
         return is_solid(scene, scene.shapes[i]);
     });
-    *solid_count = static_cast<int>(others - order.begin());
+    const auto smaller = std::stable_partition(order.begin(), others, [&](std::size_t i) {
+        return sphere_radius(scene.shapes[i]) * work.flat.placement.scale >= wide_radius;
+    });
+    config.SOLID_COUNT = static_cast<int>(others - order.begin());
+    config.WIDE_COUNT = static_cast<int>(smaller - order.begin());
     return order;
 }
 
 void flatten_spheres(Flattening &work, bool in_bvh, std::vector<BvhSphere> &bvh_spheres) {
     FlatScene &flat = work.flat;
-    int solid_count = 0;
-    const std::vector<std::size_t> order = order_spheres(work.scene, &solid_count);
-    flat.config.SOLID_COUNT = in_bvh ? 0 : solid_count;
+    const std::vector<std::size_t> order = order_spheres(work, flat.config);
+    if (in_bvh)
+        flat.config.SOLID_COUNT = flat.config.WIDE_COUNT = 0;
     for (const std::size_t i : order) {
         const Shape &shape = work.scene.shapes[i];
         const uint shape_number = append_shape(shape, work);

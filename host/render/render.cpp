@@ -13,6 +13,7 @@
 #include <deque>
 #include <fmt/core.h>
 #include <memory>
+#include <numeric>
 
 namespace clrender {
 
@@ -43,6 +44,15 @@ private:
 
 std::size_t round_up(std::size_t value, std::size_t unit) {
     return (value + unit - 1) / unit * unit;
+}
+
+/// A step that visits all of `count` items once, far from one another: near the golden section, and
+/// without a divisor in common with the count.
+std::size_t dealing_stride(std::size_t count) {
+    auto stride = static_cast<std::size_t>(0.618 * static_cast<double>(count)) + 1;
+    while (std::gcd(stride, count) > 1)
+        ++stride;
+    return stride;
 }
 
 /// One render: the device's side of the film and the launches that fill it.
@@ -130,6 +140,7 @@ void PathTracer::enqueue(const LaunchPlan::Launch &launch, cl::Event *event) {
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.first_block));
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.end_block));
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.colour));
+        kernel_.setArg(argument++, static_cast<cl_uint>(dealing_stride(launch.item_count)));
         queue_.enqueueNDRangeKernel(
             kernel_, cl::NullRange,
             cl::NDRange(round_up(std::max<std::size_t>(launch.item_count, 1), group_)),
