@@ -141,8 +141,10 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
 }
 
 /// True if no ray can start inside the sphere: it lets none through, and the camera is outside. A
-/// path cannot get in without meeting the surface.
+/// path cannot get in without meeting the surface, unless a clip plane cuts the surface open.
 bool is_solid(const Scene &scene, const Shape &shape) {
+    if (scene.sensor.near_clip || scene.integrator.kind == IntegratorKind::depth)
+        return false;
     const auto transmits = [&](int bsdf) {
         return bsdf != none &&
                scene.bsdfs[static_cast<std::size_t>(bsdf)].kind == BsdfKind::dielectric;
