@@ -63,37 +63,52 @@ CLR_INLINE int work_left(const Work *work) {
     return work->next_y < work->height;
 }
 
+/* `count` samples of the current pixel are taken; there are as many. */
+CLR_INLINE void work_advance(Work *work, uint count) {
+    work->next_sample += count;
+    if (work->next_sample < work->end_sample)
+        return;
+    work->next_sample = work->first_sample;
+    if (++work->next_x == work->width) {
+        work->next_x = 0;
+        ++work->next_y;
+    }
+}
+
 /* Idle lanes take the next samples in turn; lanes that find none stay idle. */
 CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     __global const FrameData *f = scene->frame;
-    int idle[LANES], pixel[LANES], taken[LANES], column[LANES], row[LANES];
-    uint sample[LANES];
-    store_int(~p->alive, idle);
-    store_int(p->pixel, pixel);
-    for (int i = 0; i < LANES; ++i) {
-        taken[i] = 0;
-        sample[i] = 0;
-        column[i] = row[i] = 0;
-        if (idle[i] && work_left(work)) {
-            taken[i] = -1;
-            pixel[i] = work->next_y * TILE + work->next_x;
-            column[i] = work->x + work->next_x;
-            row[i] = work->y + work->next_y;
-            sample[i] = work->next_sample;
-            if (++work->next_sample == work->end_sample) {
-                work->next_sample = work->first_sample;
-                if (++work->next_x == work->width) {
-                    work->next_x = 0;
-                    ++work->next_y;
-                }
-            }
+    mask_l idle = ~p->alive;
+    mask_l fresh = idle;
+    int_l sample, px, py;
+    const int wanted = count_lanes(idle);
+    if (work->next_sample + (uint)wanted <= work->end_sample) {
+        /* All from one pixel. */
+        sample = rank_of_lanes(idle) + (int)work->next_sample;
+        px = int_of(work->next_x);
+        py = int_of(work->next_y);
+        work_advance(work, (uint)wanted);
+    } else {
+        int lanes[LANES], samples[LANES], columns[LANES], rows[LANES];
+        store_int(idle, lanes);
+        for (int i = 0; i < LANES; ++i) {
+            samples[i] = (int)work->next_sample;
+            columns[i] = work->next_x;
+            rows[i] = work->next_y;
+            lanes[i] = lanes[i] && work_left(work) ? -1 : 0;
+            if (lanes[i])
+                work_advance(work, 1u);
         }
+        fresh = load_int(lanes);
+        sample = load_int(samples);
+        px = load_int(columns);
+        py = load_int(rows);
     }
-    mask_l fresh = load_int(taken);
-    p->pixel = load_int(pixel);
-    int_l px = load_int(column), py = load_int(row);
+    p->pixel = ipick(fresh, py * TILE + px, p->pixel);
+    px += work->x;
+    py += work->y;
     uint_l linear = as_uint_l(py * (int)f->width + px);
-    Sampler sampler = sampler_init(f->seed, linear, load_uint(sample));
+    Sampler sampler = sampler_init(f->seed, linear, as_uint_l(sample));
     CameraRay ray = camera_ray(scene, px, py, sampler);
     sampler_advance(&sampler, CAMERA_DIMENSIONS);
 #if HAS_CLIP || INTEGRATOR == 1
@@ -124,33 +139,56 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     p->sampler.key = upick(fresh, sampler.key, p->sampler.key);
 }
 
+CLR_INLINE void paths_count_nonfinite(const SceneData *scene, const Work *work, mask_l bad,
+                                      const int *pixel, ItemCounters *counters) {
+    int lanes[LANES];
+    store_int(bad, lanes);
+    for_each_lane(i, lanes) {
+        if (counters->nonfinite++ == 0)
+            counters->first_nonfinite = (uint)(work->y + pixel[i] / TILE) * scene->frame->width +
+                                        (uint)(work->x + pixel[i] % TILE);
+    }
+}
+
 /* Adds what the finished paths have gathered to the block; a path that is not finite is counted,
    and counts as black. */
 CLR_INLINE void paths_finish(const SceneData *scene, Paths *p, const Work *work, BlockSums *block,
                              ItemCounters *counters) {
+    mask_l finished = p->pending & ~p->alive;
+    mask_l finite = is_finite(p->radiance.x) & is_finite(p->radiance.y) & is_finite(p->radiance.z);
+    vec3 black = v3_of(0.0f, 0.0f, 0.0f);
+    vec3 radiance = v3_pick(finite, p->radiance, black);
+    int lanes[LANES], pixel[LANES];
+    store_int(finished, lanes);
+    store_int(p->pixel, pixel);
+    if (any_lane(finished & ~finite))
+        paths_count_nonfinite(scene, work, finished & ~finite, pixel, counters);
+    if (!any_lane(finished))
+        return;
+#if FILTER != 3
+    /* Mostly all lanes have been at one pixel. */
+    int first = 0;
+    while (!lanes[first])
+        ++first;
+    if (!any_lane(finished & ~ieq(p->pixel, int_of(pixel[first])))) {
+        block_add_lanes(block, pixel[first] % TILE, pixel[first] / TILE,
+                        v3_pick(finished, radiance, black), pick(finished, p->alpha, real_of(0.0f)),
+                        pick(finished, p->weight, real_of(0.0f)));
+        p->pending &= p->alive;
+        return;
+    }
+#endif
     float r[LANES], g[LANES], b[LANES], alpha[LANES], weight[LANES], dx[LANES], dy[LANES];
-    int lanes[LANES], finite[LANES], pixel[LANES];
-    store_real(p->radiance.x, r);
-    store_real(p->radiance.y, g);
-    store_real(p->radiance.z, b);
+    store_real(radiance.x, r);
+    store_real(radiance.y, g);
+    store_real(radiance.z, b);
     store_real(p->alpha, alpha);
     store_real(p->weight, weight);
     store_real(p->dx, dx);
     store_real(p->dy, dy);
-    store_int(is_finite(p->radiance.x) & is_finite(p->radiance.y) & is_finite(p->radiance.z),
-              finite);
-    store_int(p->pending & ~p->alive, lanes);
-    store_int(p->pixel, pixel);
     for_each_lane(i, lanes) {
-        const int x = pixel[i] % TILE, y = pixel[i] / TILE;
         FilmSample s = {r[i], g[i], b[i], alpha[i], weight[i], dx[i], dy[i]};
-        if (!finite[i]) {
-            if (counters->nonfinite++ == 0)
-                counters->first_nonfinite =
-                    (uint)(work->y + y) * scene->frame->width + (uint)(work->x + x);
-            s.r = s.g = s.b = 0.0f;
-        }
-        block_add_sample(scene, block, x, y, s);
+        block_add_sample(scene, block, pixel[i] % TILE, pixel[i] / TILE, s);
     }
     p->pending &= p->alive;
 }

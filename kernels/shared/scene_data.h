@@ -115,11 +115,12 @@ typedef struct {
     uint texture;
     float density;
     uint kind;
-    float center[3];
     float radius;
-    uint pad[2];
+    uint pad0;
+    float center[3];
+    uint pad[5];
 } EmitterInfo;
-CLR_STATIC_SIZE(EmitterInfo, 48);
+CLR_STATIC_SIZE(EmitterInfo, 64);
 
 /* An emissive triangle: v0 and two edges, front side by their cross product. With vertex normals
    (`smooth`), `normals` tell the front side as they do for shading. */
