@@ -354,7 +354,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     if (!any_lane(going))
         return;
     material = ipick(going, material, int_of(0));
-    Bsdf bsdf = bsdf_fetch(scene, material, surface.u, surface.v, going);
+    Bsdf bsdf = bsdf_fetch(scene, surface, material, going);
     vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
     cosine = fabs(cosine);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fmt/core.h>
 #include <limits>
 
@@ -159,7 +160,8 @@ bool is_solid(const Scene &scene, const Shape &shape) {
     return distance > sphere_radius(shape) * margin + scene.sensor.aperture_radius;
 }
 
-/// Spheres from this radius on, in the renderer's units, are as large as what the camera is near to.
+/// Spheres from this radius on, in the renderer's units, are as large as what the camera is near
+/// to.
 constexpr double wide_radius = 0.5;
 
 /// The spheres' shapes in the order of their primitives: solid ones first, of these those that are
@@ -246,6 +248,7 @@ void make_records(FlatScene &flat) {
         const Sphere &s = flat.spheres[i % spheres];
         flat.sphere_tests.push_back({{s.center[0], s.center[1], s.center[2]}, s.radius * s.radius});
     }
+    bool one_sided = true;
     for (std::size_t i = 0; i < spheres + flat.planars.size(); ++i) {
         PrimitiveRecord r{};
         if (i < spheres) {
@@ -260,8 +263,17 @@ void make_records(FlatScene &flat) {
         }
         r.materials = flat.shapes[i].materials;
         r.emitter = flat.shapes[i].emitter;
+        const uint front = r.materials & CLR_NO_MATERIAL;
+        const uint back = r.materials >> 16;
+        one_sided =
+            one_sided && (front == back || front == CLR_NO_MATERIAL || back == CLR_NO_MATERIAL);
+        const uint material = front != CLR_NO_MATERIAL ? front : back;
+        if (material != CLR_NO_MATERIAL)
+            std::memcpy(r.material, &flat.materials[material], sizeof(r.material));
         flat.records.push_back(r);
     }
+    const bool lane_wise_only = flat.shape_of.empty();
+    flat.config.MATERIALS_IN_RECORDS = one_sided && lane_wise_only ? 1 : 0;
 }
 
 } // namespace

@@ -54,8 +54,9 @@ typedef struct {
 } ShapeInfo;
 CLR_STATIC_SIZE(ShapeInfo, 8);
 
-/* What a hit on a lane-wise primitive needs, in one load: a sphere's centre and radius or a
-   planar's normal and its distance from the origin, and the shape's info. */
+/* What a hit on a lane-wise primitive needs, in one place: a sphere's centre and radius or a
+   planar's normal and its distance from the origin, the shape's info, and the first half of the
+   material of its sides, where they do not differ (MATERIALS_IN_RECORDS). */
 typedef struct {
     float place[3]; /* centre or normal */
     float size;     /* radius or distance */
@@ -63,8 +64,9 @@ typedef struct {
     uint emitter;
     uint is_disk;
     uint pad;
+    float material[8];
 } PrimitiveRecord;
-CLR_STATIC_SIZE(PrimitiveRecord, 32);
+CLR_STATIC_SIZE(PrimitiveRecord, 64);
 
 #define CLR_BSDF_DIFFUSE 0u
 #define CLR_BSDF_CONDUCTOR 1u
