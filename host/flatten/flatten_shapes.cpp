@@ -254,6 +254,7 @@ void make_records(FlatScene &flat) {
         if (i < spheres) {
             std::copy_n(flat.spheres[i].center, 3, r.place);
             r.size = flat.spheres[i].radius;
+            r.inv_size = 1 / r.size;
         } else {
             const Planar &p = flat.planars[i - spheres];
             std::copy_n(p.normal, 3, r.place);

@@ -63,7 +63,7 @@ typedef struct {
     uint materials;
     uint emitter;
     uint is_disk;
-    uint pad;
+    float inv_size; /* of a sphere */
     float material[8];
 } PrimitiveRecord;
 CLR_STATIC_SIZE(PrimitiveRecord, 64);
