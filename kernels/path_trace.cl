@@ -262,12 +262,12 @@ CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surfa
         wanted & ~scene_occluded(scene, o, light.wi, prim, light.prim, light.t_max, wanted);
     real bsdf_pdf = cosine * CLR_INV_PI;
 #if STRATEGY == 0
-    real weight = bsdf_pdf * mis_weight_over_pdf(light.pdf, bsdf_pdf);
+    real weight = bsdf_pdf * mis_weight_over_pdf(light.inv_pdf, bsdf_pdf);
 #if HAS_POINT_LIGHTS
-    weight = pick(light.delta, bsdf_pdf / light.pdf, weight);
+    weight = pick(light.delta, bsdf_pdf * light.inv_pdf, weight);
 #endif
 #else
-    real weight = bsdf_pdf / light.pdf;
+    real weight = bsdf_pdf * light.inv_pdf;
 #endif
     paths_add_radiance(p, v3_mul(albedo, light.radiance), weight, lit);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <fmt/core.h>
 #include <fstream>
@@ -20,7 +21,7 @@ int usable_processors() {
     double quota = 0;
     double period = 0;
     if (quota_file >> quota >> period && period > 0)
-        count = std::min(count, std::max(1, static_cast<int>(quota / period + 0.5)));
+        count = std::min(count, std::max(1, static_cast<int>(std::lround(quota / period))));
     return count;
 }
 

@@ -215,12 +215,13 @@ void flatten_lights(Flattening &work) {
     const std::vector<double> probability = choose_probabilities(list);
     for (std::size_t i = 0; i < list.lights.size(); ++i) {
         Light &light = list.lights[i];
-        light.probability = static_cast<float>(probability[i]);
+        light.inv_probability = static_cast<float>(1 / probability[i]);
+        const auto chosen = static_cast<float>(probability[i]);
         EmitterInfo &info = flat.emitters[list.emitter[i]];
         if (light.kind == CLR_LIGHT_SPHERE)
-            info.density = light.probability;
+            info.density = chosen;
         else if (light.kind == CLR_LIGHT_ENVIRONMENT)
-            flat.frame.env_probability = light.probability;
+            flat.frame.env_probability = chosen;
         else if (light.kind != CLR_LIGHT_POINT)
             info.density = static_cast<float>(probability[i] / light.area);
     }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <fmt/core.h>
 #include <memory>
@@ -211,7 +212,7 @@ void PathTracer::read(RenderResult &result, PixelFormat format) {
     result.variance = film_variance(film, width, height, format);
 
     RenderStats &stats = result.stats;
-    stats.paths = paths_done_;
+    stats.paths = std::round(paths_done_);
     for (const ItemCounters &c : counters) {
         stats.rays += c.rays_low + 4294967296.0 * c.rays_high;
         if (c.nonfinite > 0 && stats.nonfinite_samples == 0) {

@@ -95,7 +95,8 @@ CLR_STATIC_SIZE(Material, 64);
 #define CLR_LIGHT_ENVIRONMENT 4u
 
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
-   light triangles. `probability` is that of being chosen. Point: radiance holds the intensity,
+   light triangles. `inv_probability` is the inverse of
+   that of being chosen. Point: radiance holds the intensity,
    times the square of the unit of length. Sphere: `area` holds the radius. */
 typedef struct {
     float position[3];
@@ -103,7 +104,7 @@ typedef struct {
     float radiance[3];
     uint texture;
     uint prim;
-    float probability;
+    float inv_probability;
     float area;
     uint shape; /* of a sphere */
 } Light;
