@@ -210,7 +210,7 @@ TEST_CASE("no ray leaves a closed mesh") {
     }
 }
 
-TEST_CASE("a ray that is none hits nothing and ends") {
+TEST_CASE("a ray that is none hits nothing and ends", "[oclgrind]") {
     Random random(5);
     BvhScene scene = random_scene(random, 300, 10);
     scene.add_sphere(glm::vec3(0.0f), 10.0f);
@@ -362,7 +362,7 @@ TEST_CASE("spheres far away and huge ones nearby are hit where they are") {
     }
 }
 
-TEST_CASE("degenerate triangles are left out and nothing else") {
+TEST_CASE("degenerate triangles are left out and nothing else", "[oclgrind]") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Triangle good{glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
     BvhScene scene;
@@ -430,7 +430,7 @@ TEST_CASE("a tree is sound, and the same on one thread and on all") {
     CHECK(std::count(seen.begin(), seen.end(), 0) == std::ptrdiff_t(bvh.degenerate));
 }
 
-TEST_CASE("a tree of nothing is hit by nothing") {
+TEST_CASE("a tree of nothing is hit by nothing", "[oclgrind]") {
     const Bvh bvh = build_bvh({});
     CHECK(bvh.nodes.size() == 1);
     Random random(9);

@@ -1,0 +1,124 @@
+/// Small device functions against double precision, at every width.
+
+#include "cl_test_device.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <numbers>
+#include <random>
+#include <string>
+
+using namespace clrender;
+using namespace clrender::test;
+
+namespace {
+
+constexpr int widths[] = {1, 4, 8, 16};
+
+cl::Program build_probes(const ClTestDevice &device, int lanes) {
+    return device.build("probes/function_probes.cl", "-DLANES=" + std::to_string(lanes),
+                        embedded_kernel_sources());
+}
+
+std::size_t items_for(std::size_t count, int lanes) {
+    const auto width = static_cast<std::size_t>(lanes);
+    return (count + width - 1) / width;
+}
+
+} // namespace
+
+TEST_CASE("sine and cosine of a turn are right to 2e-7", "[oclgrind]") {
+    const ClTestDevice device;
+    const std::size_t count = small_tests() ? 100 : 100000;
+    std::vector<float> turns(count);
+    for (std::size_t i = 0; i < count; ++i)
+        turns[i] = static_cast<float>(i) / static_cast<float>(count);
+    turns.back() = std::nextafter(1.0f, 0.0f);
+    for (const int lanes : widths) {
+        cl::Kernel kernel(build_probes(device, lanes), "probe_sincos");
+        const cl::Buffer in = device.upload<float>(turns);
+        const cl::Buffer out = device.allocate(2 * count * sizeof(float));
+        kernel.setArg(0, in);
+        kernel.setArg(1, out);
+        kernel.setArg(2, static_cast<cl_uint>(count));
+        device.run(kernel, items_for(count, lanes), 1);
+        const std::vector<float> values = device.download<float>(out, 2 * count);
+        double worst = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double angle = 2 * std::numbers::pi * static_cast<double>(turns[i]);
+            worst = std::max(worst, std::abs(std::sin(angle) - double{values[2 * i]}));
+            worst = std::max(worst, std::abs(std::cos(angle) - double{values[2 * i + 1]}));
+        }
+        INFO("width " << lanes);
+        CHECK(worst < 2e-7);
+    }
+}
+
+TEST_CASE("random numbers lie in [0, 1), are uniform and the same at every width", "[oclgrind]") {
+    const ClTestDevice device;
+    const std::size_t count = small_tests() ? 200 : 200000;
+    std::vector<float> narrow;
+    for (const int lanes : widths) {
+        cl::Kernel kernel(build_probes(device, lanes), "probe_sampler");
+        const cl::Buffer out = device.allocate(count * sizeof(float));
+        kernel.setArg(0, out);
+        kernel.setArg(1, cl_uint{7});
+        kernel.setArg(2, cl_uint{4000000000u});
+        kernel.setArg(3, cl_uint{5});
+        kernel.setArg(4, static_cast<cl_uint>(count));
+        device.run(kernel, items_for(count, lanes), 1);
+        const std::vector<float> values = device.download<float>(out, count);
+        if (lanes == 1)
+            narrow = values;
+        CHECK(values == narrow);
+    }
+    // Chi-square over 64 cells: 63 degrees of freedom, standard deviation 11.2.
+    std::vector<double> cells(64, 0.0);
+    for (const float v : narrow) {
+        REQUIRE(v >= 0.0f);
+        REQUIRE(v < 1.0f);
+        ++cells[static_cast<std::size_t>(v * 64)];
+    }
+    const double expected = static_cast<double>(count) / 64;
+    double chi2 = 0;
+    for (const double n : cells)
+        chi2 += (n - expected) * (n - expected) / expected;
+    CHECK(chi2 > 63 - 5 * 11.2);
+    CHECK(chi2 < 63 + 5 * 11.2);
+}
+
+TEST_CASE("frames are orthonormal for all normals", "[oclgrind]") {
+    const ClTestDevice device;
+    std::vector<float> normals = {0, 0, 1, 0, 0, -1, 1, 0, 0, 0, -1, 0, -0.0f, 0, -1};
+    std::mt19937 random(3);
+    std::normal_distribution<double> gauss;
+    for (int i = 0; i < (small_tests() ? 50 : 5000); ++i) {
+        const glm::dvec3 n = glm::normalize(
+            glm::dvec3(gauss(random), gauss(random), gauss(random) * (i % 2 == 0 ? 1 : 1e-4)));
+        for (int c = 0; c < 3; ++c)
+            normals.push_back(static_cast<float>(n[c]));
+    }
+    const std::size_t count = normals.size() / 3;
+    for (const int lanes : widths) {
+        cl::Kernel kernel(build_probes(device, lanes), "probe_frame");
+        const cl::Buffer in = device.upload<float>(normals);
+        const cl::Buffer out = device.allocate(6 * count * sizeof(float));
+        kernel.setArg(0, in);
+        kernel.setArg(1, out);
+        kernel.setArg(2, static_cast<cl_uint>(count));
+        device.run(kernel, items_for(count, lanes), 1);
+        const std::vector<float> values = device.download<float>(out, 6 * count);
+        double worst = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::dvec3 n(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+            const glm::dvec3 s(values[6 * i], values[6 * i + 1], values[6 * i + 2]);
+            const glm::dvec3 t(values[6 * i + 3], values[6 * i + 4], values[6 * i + 5]);
+            for (const double error : {glm::dot(n, s), glm::dot(n, t), glm::dot(s, t),
+                                       glm::length(s) - 1, glm::length(t) - 1})
+                worst = std::max(worst, std::abs(error));
+        }
+        INFO("width " << lanes);
+        CHECK(worst < 1e-6);
+    }
+}
