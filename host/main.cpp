@@ -60,6 +60,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.device = options.device;
     r.brute_force = options.accel == cli::Accel::none;
     r.pixel_centers = options.pixel_centers;
+    r.independent_sampler = options.independent;
     r.batch = options.batch;
     r.tile = options.tile;
     r.kernel_dir = options.kernel_dir;

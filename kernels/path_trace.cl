@@ -13,25 +13,27 @@
 #include "environment.clh"
 #include "film.clh"
 #include "light.clh"
-#include "rng.clh"
+#include "sampler.clh"
 #include "scene.clh"
 #include "shared/launch_data.h"
 #include "surface.clh"
 
-/* Numbers that a bounce uses, in their order: light sampling takes the first seven. */
-#define BOUNCE_LIGHT 0u
-#define BOUNCE_LOBE 7u
-#define BOUNCE_BSDF 8u
-#define BOUNCE_ROULETTE 10u
-#define BOUNCE_DIMENSIONS 11u
+/* Numbers that a bounce uses: pairs, and one alone. The choice of a light and that of a lobe are a
+   pair, which costs less than two numbers apart. */
+#define BOUNCE_CHOICES 0u
+#define BOUNCE_LIGHT 2u
+#define BOUNCE_BSDF 4u
+#define BOUNCE_ROULETTE 6u
+#define BOUNCE_DIMENSIONS 7u
 
 /* Lanes that have to be idle before new samples are started: starting costs the same for one lane
    as for all. */
 #define REFILL_LANES ((LANES + 1) / 2)
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
-   of the last direction, where the last vertex was not specular; `eta2` undoes the compression of
-   radiance in roulette; `radiance` is what the sample has gathered. */
+   of the last direction, where the last vertex was not specular, and `prev_n` the normal there;
+   `eta2` undoes the compression of radiance in roulette; `radiance` is what the sample has
+   gathered. */
 typedef struct {
     mask_l alive;
     vec3 o, d;
@@ -41,6 +43,7 @@ typedef struct {
     real alpha;
     real prev_pdf;
     mask_l prev_specular;
+    vec3 prev_n;
     real eta2;
     int_l depth;
     Sampler sampler;
@@ -135,8 +138,7 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     p->prev_specular |= fresh;
     p->eta2 = pick(fresh, real_of(1.0f), p->eta2);
     p->depth = ipick(fresh, int_of(0), p->depth);
-    p->sampler.counter = upick(fresh, sampler.counter, p->sampler.counter);
-    p->sampler.key = upick(fresh, sampler.key, p->sampler.key);
+    p->sampler = sampler_pick(fresh, sampler, p->sampler);
 }
 
 CLR_INLINE void paths_count_nonfinite(const SceneData *scene, const Work *work, mask_l bad,
@@ -235,14 +237,15 @@ CLR_INLINE void paths_add_environment(const SceneData *scene, Paths *p, mask_l e
 
 #if HAS_AREA_EMITTERS
 /* Light of the surfaces that paths have met. */
-CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface surface, real t,
-                                   mask_l hit) {
+CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface surface, int_l prim,
+                                   real t, mask_l hit) {
     mask_l front = lt(v3_dot(surface.ns, p->d), real_of(0.0f));
     mask_l lit = hit & front & ige(surface.emitter, int_of(0));
     if (!any_lane(lit))
         return;
     real pdf;
-    vec3 radiance = light_of_surface(scene, surface, p->o, p->d, t, lit, &pdf);
+    /* What no light sample could have found need not be asked for its density. */
+    vec3 radiance = light_of_surface(scene, surface, prim, p->o, p->prev_n, p->d, t, lit, &pdf);
     paths_add_radiance(p, radiance, weight_of_chance(p, pdf), lit);
 }
 #endif
@@ -250,9 +253,9 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
 /* Direct light at diffuse surfaces: one sampled light each, behind a shadow ray. */
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                 vec3 albedo, int_l prim, mask_l diffuse) {
+                                 vec3 albedo, int_l prim, real choice, mask_l diffuse) {
     vec3 o = ray_origin(surface, n);
-    LightSample light = light_sample(scene, o, p->sampler, BOUNCE_LIGHT, diffuse);
+    LightSample light = light_sample(scene, o, n, choice, p->sampler, BOUNCE_LIGHT, diffuse);
     real cosine = v3_dot(n, light.wi);
     mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
     if (!any_lane(wanted))
@@ -337,7 +340,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     p->alpha = pick(seen, p->throughput.x, p->alpha);
 #endif
 #if HAS_AREA_EMITTERS
-    paths_add_emission(scene, p, surface, hit.t, met);
+    paths_add_emission(scene, p, surface, hit.prim, hit.t, met);
 #endif
     mask_l going = met & ilt(p->depth, int_of(f->max_depth - 1));
 
@@ -358,15 +361,16 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
     cosine = fabs(cosine);
 
+    real u_light, u_lobe, u1, u2;
+    sampler_get_pair(p->sampler, BOUNCE_CHOICES, &u_light, &u_lobe);
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
     if (any_lane(diffuse))
-        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, diffuse);
+        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, u_light, diffuse);
 #endif
 
-    BsdfSample sample = bsdf_sample(
-        bsdf, p->d, n, cosine, back, sampler_get(p->sampler, BOUNCE_LOBE),
-        sampler_get(p->sampler, BOUNCE_BSDF), sampler_get(p->sampler, BOUNCE_BSDF + 1u));
+    sampler_get_pair(p->sampler, BOUNCE_BSDF, &u1, &u2);
+    BsdfSample sample = bsdf_sample(bsdf, p->d, n, cosine, back, u_lobe, u1, u2);
     /* Lanes that have ended may go on computing nonsense: nothing of it is looked at. */
 #if HIDE_EMITTERS && HAS_AREA_EMITTERS
     mask_l moved = ~through;
@@ -379,6 +383,9 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     p->self = ipick(moved, hit.prim, p->self);
     p->prev_pdf = pick(moved, sample.pdf, p->prev_pdf);
     p->prev_specular = ipick(moved, sample.specular, p->prev_specular);
+#if LIGHT_COUNT == -1
+    p->prev_n = v3_pick(moved, n, p->prev_n);
+#endif
     p->eta2 = pick(moved, p->eta2 * sample.eta * sample.eta, p->eta2);
     p->depth -= moved;
     vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
@@ -395,10 +402,11 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
                              ItemCounters *counters) {
     Paths p;
     p.alive = p.pending = p.prev_specular = no_lanes();
-    p.rays = p.sampler.counter = p.sampler.key = as_uint_l(no_lanes());
+    p.rays = as_uint_l(no_lanes());
+    p.sampler = sampler_init(0u, p.rays, p.rays);
     p.pixel = p.depth = int_of(0);
     p.self = int_of(-1);
-    p.o = p.d = p.throughput = p.radiance = v3_of(0.0f, 0.0f, 0.0f);
+    p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);
     for (;;) {
@@ -444,21 +452,21 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
            __global const uint *shape_of, __global const ShapeInfo *shapes,
            __global const float *shape_frames, __global const Material *materials,
            __global const EmitterInfo *emitters, __global const Light *lights,
-           __global const LightTriangle *light_triangles, __global const AliasEntry *light_alias,
+           __global const LightTriangle *light_triangles, __global const LightNode *light_nodes,
            __global const TextureInfo *textures, __global const uint *texels_u8,
            __global const float *texels_f32, __global const float *decode,
-           __global const float *env_texels, __global const AliasEntry *env_alias,
-           __global const float *env_density, __global const float *filter,
-           __global FilmPixel *film, __global ItemCounters *item_counters, uint first_item,
-           uint item_count, uint first_block, uint end_block, uint colour, uint stride) {
+           __global const float *env_texels, __global const float *env_cdf,
+           __global const uint *env_guide, __global const float *filter, __global FilmPixel *film,
+           __global ItemCounters *item_counters, uint first_item, uint item_count, uint first_block,
+           uint end_block, uint colour, uint stride) {
     if (get_global_id(0) >= item_count)
         return;
-    SceneData scene = {frame,       spheres,         sphere_tests,    planars,      records,
-                       nodes,       triangle_blocks, sphere_blocks,   triangles,    normals,
-                       uvs,         shape_of,        shapes,          shape_frames, materials,
-                       emitters,    lights,          light_triangles, light_alias,  textures,
-                       texels_u8,   texels_f32,      decode,          env_texels,   env_alias,
-                       env_density, filter};
+    SceneData scene = {frame,     spheres,         sphere_tests,    planars,      records,
+                       nodes,     triangle_blocks, sphere_blocks,   triangles,    normals,
+                       uvs,       shape_of,        shapes,          shape_frames, materials,
+                       emitters,  lights,          light_triangles, light_nodes,  textures,
+                       texels_u8, texels_f32,      decode,          env_texels,   env_cdf,
+                       env_guide, filter};
     const uint dealt = (uint)((ulong)get_global_id(0) * stride % item_count);
     Work work = tile_of_item(frame, first_item + dealt, colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;

@@ -147,6 +147,7 @@ struct RawOptions {
     std::string resolution;
     std::string lanes = "auto";
     std::string accel = "bvh";
+    std::string sampler = "sobol";
     std::vector<std::string> defines;
     bool list_devices = false;
 };
@@ -196,6 +197,11 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->group(group);
     app.add_flag("--pixel-centers", options.pixel_centers,
                  "All samples at the centres of the pixels, no filter")
+        ->group(group);
+    app.add_option("--sampler", raw.sampler,
+                   "sobol, or independent: random numbers without order (default: sobol)")
+        ->type_name("NAME")
+        ->check(one_of({"sobol", "independent"}))
         ->group(group);
     app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
         ->type_name("WHICH")
@@ -258,6 +264,7 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (!raw.resolution.empty())
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
+    options.independent = raw.sampler == "independent";
     options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');

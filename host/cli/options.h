@@ -40,6 +40,7 @@ struct Options {
     double exposure = 0; ///< stops, for the 8-bit formats
     bool pixel_centers = false;
     Accel accel = Accel::bvh;
+    bool independent = false; ///< --sampler independent
     bool check = false;
     std::string stats; ///< JSON file, or empty
     bool quiet = false;

@@ -36,14 +36,14 @@ std::vector<View> views(const FlatScene &flat) {
             view(flat.emitters),
             view(flat.lights),
             view(flat.light_triangles),
-            view(flat.light_alias),
+            view(flat.light_nodes),
             view(flat.textures),
             view(flat.texels_u8),
             view(flat.texels_f32),
             view(flat.decode),
             view(flat.env_texels),
-            view(flat.env_alias),
-            view(flat.env_density),
+            view(flat.env_cdf),
+            view(flat.env_guide),
             view(flat.filter)};
 }
 

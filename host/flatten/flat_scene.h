@@ -44,14 +44,14 @@ struct FlatScene {
     std::vector<EmitterInfo> emitters;
     std::vector<Light> lights;
     std::vector<LightTriangle> light_triangles;
-    std::vector<AliasEntry> light_alias;
+    std::vector<LightNode> light_nodes;
     std::vector<TextureInfo> textures;
     std::vector<uint> texels_u8;
     std::vector<float> texels_f32;
     std::vector<float> decode;
     std::vector<float> env_texels;
-    std::vector<AliasEntry> env_alias;
-    std::vector<float> env_density;
+    std::vector<float> env_cdf;
+    std::vector<uint> env_guide;
     std::vector<float> filter;
     /// All but LANES and ITEM_PIXELS, which the device decides.
     KernelConfig config;

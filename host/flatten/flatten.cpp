@@ -9,8 +9,8 @@ std::size_t FlatScene::bytes() const {
     return sizeof(frame) + size(spheres, sphere_tests, planars, records, bvh.nodes,
                                 bvh.triangle_blocks, bvh.sphere_blocks, triangles, normals, uvs,
                                 shape_of, shapes, shape_frames, materials, emitters, lights,
-                                light_triangles, light_alias, textures, texels_u8, texels_f32,
-                                decode, env_texels, env_alias, env_density, filter);
+                                light_triangles, light_nodes, textures, texels_u8, texels_f32,
+                                decode, env_texels, env_cdf, env_guide, filter);
 }
 
 FlatScene flatten(const Scene &scene, const FlattenOptions &options) {

@@ -1,8 +1,10 @@
-#include "alias_table.h"
 #include "flatten_parts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 namespace clrender {
 
@@ -34,8 +36,33 @@ double cell_solid_angle(std::size_t j, std::size_t rows, std::size_t width) {
     return (top - bottom) * 2 * pi / static_cast<double>(width);
 }
 
-/// The table over the cells between four texels each, by mean luminance times solid angle; returns
-/// the integral of luminance over all directions.
+/// Appends the distribution of steps of these weights to `cdf`, and to `guide` the step that each
+/// multiple of 1 / count lies in. Steps of equal weight where there is none.
+void append_distribution(std::span<const double> weights, std::vector<float> &cdf,
+                         std::vector<uint> &guide) {
+    const std::size_t count = weights.size();
+    const std::size_t first = cdf.size();
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    double sum = 0;
+    cdf.push_back(0.0f);
+    for (std::size_t i = 0; i < count; ++i) {
+        sum += total > 0 ? weights[i] / total : 1 / static_cast<double>(count);
+        cdf.push_back(static_cast<float>(std::min(sum, 1.0)));
+    }
+    cdf.back() = 1.0f;
+    std::size_t step = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto u = static_cast<float>(static_cast<double>(i) / static_cast<double>(count));
+        while (step + 1 < count && cdf[first + step + 1] <= u)
+            ++step;
+        // One step back, where the device's product of u and the count may round up to i.
+        guide.push_back(
+            static_cast<uint>(step > 0 && cdf[first + step] >= u * (1 - 1e-6f) ? step - 1 : step));
+    }
+}
+
+/// The distributions over the cells between four texels each, by mean luminance times solid angle;
+/// returns the integral of luminance over all directions.
 double build_cells(std::size_t width, std::size_t height, FlatScene &flat) {
     const std::size_t rows = height - 1;
     const auto luminance_at = [&](std::size_t row, std::size_t column) {
@@ -43,6 +70,7 @@ double build_cells(std::size_t width, std::size_t height, FlatScene &flat) {
         return luminance({c[0], c[1], c[2]});
     };
     std::vector<double> weight(width * rows);
+    std::vector<double> weight_of_row(rows, 0.0);
     double total = 0;
     for (std::size_t j = 0; j < rows; ++j)
         for (std::size_t i = 0; i < width; ++i) {
@@ -50,15 +78,15 @@ double build_cells(std::size_t width, std::size_t height, FlatScene &flat) {
                                  luminance_at(j + 1, i) + luminance_at(j + 1, i + 1)) /
                                 4;
             weight[j * width + i] = mean * cell_solid_angle(j, rows, width);
+            weight_of_row[j] += weight[j * width + i];
             total += weight[j * width + i];
         }
     if (!(total > 0))
         return 0;
-    flat.env_alias = build_alias_table(weight);
-    flat.env_density.resize(weight.size());
-    const double cells = static_cast<double>(weight.size());
-    for (std::size_t i = 0; i < weight.size(); ++i)
-        flat.env_density[i] = static_cast<float>(weight[i] / total * cells);
+    append_distribution(weight_of_row, flat.env_cdf, flat.env_guide);
+    for (std::size_t j = 0; j < rows; ++j)
+        append_distribution(std::span(weight).subspan(j * width, width), flat.env_cdf,
+                            flat.env_guide);
     return total;
 }
 

@@ -1,5 +1,5 @@
-#include "alias_table.h"
 #include "flatten_parts.h"
+#include "light_tree.h"
 #include "log.h"
 
 #include <algorithm>
@@ -47,19 +47,17 @@ double mean_luminance(const Texture &texture) {
     return sum / static_cast<double>(count);
 }
 
-/// The lights found so far, and what each emits.
+/// The lights found so far, and where each of them is and how strong.
 struct LightList {
     std::vector<Light> lights;
-    std::vector<double> power;
-    std::vector<std::size_t> emitter; ///< by Scene::emitters
+    std::vector<LightExtent> extents;
 
-    void add(const Light &light, double watts, std::size_t of) {
-        if (!(watts > 0))
-            return;
+    void add(const Light &light, const LightExtent &extent) {
         lights.push_back(light);
-        power.push_back(watts);
-        emitter.push_back(of);
+        extents.push_back(extent);
     }
+
+    [[nodiscard]] uint size() const { return static_cast<uint>(lights.size()); }
 };
 
 void add_point(const Flattening &work, std::size_t index, LightList &list) {
@@ -68,16 +66,41 @@ void add_point(const Flattening &work, std::size_t index, LightList &list) {
     Light light{};
     light.kind = CLR_LIGHT_POINT;
     light.texture = CLR_NONE;
-    store(light.position, glm::dvec3(work.flat.placement.apply(emitter.position)));
+    const glm::dvec3 place = work.flat.placement.apply(emitter.position);
+    store(light.position, place);
     store(light.radiance, emitter.intensity * unit * unit);
-    list.add(light, 4 * pi * luminance(emitter.intensity) * unit * unit, index);
+    const double intensity = luminance(emitter.intensity) * unit * unit;
+    if (intensity > 0)
+        list.add(light, {place, place, {0, 0, 1}, -1, intensity});
 }
 
-/// One light for each triangle, by its area.
-void add_mesh(Flattening &work, std::size_t index, const Light &base, double radiance,
+/// The cone of the normals by which a triangle shines: its own, or those of its vertices.
+void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent &extent) {
+    extent.axis = own;
+    extent.cosine = 1;
+    if (triangle.smooth == 0)
+        return;
+    glm::dvec3 sum{0.0};
+    glm::dvec3 normal[3];
+    for (int c = 0; c < 3; ++c) {
+        normal[c] = {triangle.normals[3 * c], triangle.normals[3 * c + 1],
+                     triangle.normals[3 * c + 2]};
+        sum += normal[c];
+    }
+    extent.cosine = -1;
+    if (!(glm::length(sum) > 1e-3))
+        return;
+    extent.axis = glm::normalize(sum);
+    extent.cosine = 1;
+    for (const glm::dvec3 &n : normal)
+        extent.cosine = std::min(extent.cosine, glm::dot(n, extent.axis));
+}
+
+/// One light for each triangle, so that its number tells the light; those of no area are never
+/// chosen.
+void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, double radiance,
               LightList &list) {
     FlatScene &flat = work.flat;
-    const Emitter &emitter = work.scene.emitters[index];
     const Shape &shape = work.scene.shapes[static_cast<std::size_t>(emitter.shape)];
     const std::size_t first = work.first_triangle_of_shape.at(emitter.shape);
     const std::size_t count = shape.kind == ShapeKind::mesh ? shape.mesh->triangles.size() : 2;
@@ -106,9 +129,14 @@ void add_mesh(Flattening &work, std::size_t index, const Light &base, double rad
         light.kind = CLR_LIGHT_TRIANGLE;
         light.prim = static_cast<uint>(flat.light_triangles.size());
         light.area = static_cast<float>(area);
-        if (area * radiance > 0)
-            flat.light_triangles.push_back(triangle);
-        list.add(light, pi * area * radiance, index);
+        flat.light_triangles.push_back(triangle);
+        LightExtent extent;
+        extent.lower = glm::min(glm::min(corner[0], corner[1]), corner[2]);
+        extent.upper = glm::max(glm::max(corner[0], corner[1]), corner[2]);
+        extent.intensity = area * radiance;
+        if (area > 0)
+            set_cone(triangle, glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2))), extent);
+        list.add(light, extent);
     }
 }
 
@@ -127,9 +155,16 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     const auto found = work.primitive_of_shape.find(emitter.shape);
     if (found == work.primitive_of_shape.end()) {
         info.kind = CLR_LIGHT_TRIANGLE;
-        add_mesh(work, index, light, radiance, list);
+        if (!(radiance > 0))
+            return;
+        info.density = 1;
+        info.light = list.size() -
+                     static_cast<uint>(flat.config.SPHERE_COUNT + flat.config.PLANAR_COUNT) -
+                     static_cast<uint>(work.first_triangle_of_shape.at(emitter.shape));
+        add_mesh(work, emitter, light, radiance, list);
         return;
     }
+    info.light = list.size();
     light.prim = found->second;
     if (work.scene.shapes[static_cast<std::size_t>(emitter.shape)].kind == ShapeKind::sphere) {
         // The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
@@ -143,44 +178,44 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         std::copy_n(sphere.center, 3, info.center);
         light.area = info.radius = sphere.radius;
         // A sphere that shines inwards is met by chance only: nothing outside sees it.
-        if (sphere.radius > 0)
-            list.add(light, 4 * pi * pi * sphere.radius * sphere.radius * radiance, index);
+        if (!(sphere.radius > 0) || !(radiance > 0))
+            return;
+        info.density = 1;
+        const glm::dvec3 center(sphere.center[0], sphere.center[1], sphere.center[2]);
+        const double radius = sphere.radius;
+        list.add(
+            light,
+            {center - radius, center + radius, {0, 0, 1}, -1, pi * radius * radius * radiance});
         return;
     }
     light.prim -= static_cast<uint>(flat.config.SPHERE_COUNT);
     info.kind = light.kind = CLR_LIGHT_PLANAR;
-    light.area = flat.planars[light.prim].area;
-    list.add(light, pi * light.area * radiance, index);
-}
-
-/// Probabilities in proportion to power, the environment's share held within bounds.
-std::vector<double> choose_probabilities(const LightList &list) {
-    std::vector<double> probability = list.power;
-    const double total = std::accumulate(probability.begin(), probability.end(), 0.0);
-    for (double &p : probability)
-        p /= total;
-    for (std::size_t i = 0; i < probability.size(); ++i)
-        if (list.lights[i].kind == CLR_LIGHT_ENVIRONMENT && probability.size() > 1) {
-            const double share = std::clamp(probability[i], least_share, 1 - least_share);
-            const double others = (1 - share) / std::max(1 - probability[i], 1e-30);
-            for (double &p : probability)
-                p *= others;
-            probability[i] = share;
-            break;
-        }
-    return probability;
-}
-
-void add_environment(Flattening &work, std::size_t index, LightList &list) {
-    double power = 0;
-    flatten_environment(work, work.scene.emitters[index], &power);
-    if (work.flat.config.ENVIRONMENT != 2)
+    const Planar &planar = flat.planars[light.prim];
+    light.area = planar.area;
+    if (!(radiance > 0) || !(planar.area > 0))
         return;
-    Light light{};
-    light.kind = CLR_LIGHT_ENVIRONMENT;
-    light.texture = CLR_NONE;
-    // The scene is about two units across.
-    list.add(light, pi * power, index);
+    info.density = 1 / planar.area;
+    LightExtent extent;
+    for (int c = 0; c < 3; ++c) {
+        const double reach = std::abs(double{planar.du[c]}) + std::abs(double{planar.dv[c]});
+        extent.lower[c] = planar.origin[c] - reach;
+        extent.upper[c] = planar.origin[c] + reach;
+        extent.axis[c] = planar.normal[c];
+    }
+    extent.cosine = 1;
+    extent.intensity = light.area * radiance;
+    list.add(light, extent);
+}
+
+/// The share of the samples that a map gets beside other lights: by the irradiance of either at the
+/// middle of the scene, which is about two units across.
+double environment_share(const std::vector<LightExtent> &extents, double power) {
+    double others = 0;
+    for (const LightExtent &extent : extents)
+        others += pi * extent.intensity;
+    return extents.empty()
+               ? 1
+               : std::clamp(pi * power / (pi * power + others), least_share, 1 - least_share);
 }
 
 } // namespace
@@ -193,6 +228,7 @@ void flatten_lights(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.emitters.resize(work.scene.emitters.size());
     LightList list;
+    double map_power = 0;
     for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {
         switch (work.scene.emitters[i].kind) {
         case EmitterKind::point:
@@ -203,28 +239,15 @@ void flatten_lights(Flattening &work) {
             break;
         case EmitterKind::constant:
         case EmitterKind::envmap:
-            add_environment(work, i, list);
+            flatten_environment(work, work.scene.emitters[i], &map_power);
             break;
         }
     }
     if (work.scene.emitters.empty() && work.scene.integrator.kind != IntegratorKind::depth)
         log::warn("the scene has no light: the picture will be black");
 
-    // What light sampling would have given is left with the emitters, for multiple importance
-    // sampling.
-    const std::vector<double> probability = choose_probabilities(list);
-    for (std::size_t i = 0; i < list.lights.size(); ++i) {
-        Light &light = list.lights[i];
-        light.inv_probability = static_cast<float>(1 / probability[i]);
-        const auto chosen = static_cast<float>(probability[i]);
-        EmitterInfo &info = flat.emitters[list.emitter[i]];
-        if (light.kind == CLR_LIGHT_SPHERE)
-            info.density = chosen;
-        else if (light.kind == CLR_LIGHT_ENVIRONMENT)
-            flat.frame.env_probability = chosen;
-        else if (light.kind != CLR_LIGHT_POINT)
-            info.density = static_cast<float>(probability[i] / light.area);
-    }
+    if (flat.config.ENVIRONMENT == 2)
+        flat.frame.env_probability = static_cast<float>(environment_share(list.extents, map_power));
     for (const Light &light : list.lights) {
         flat.config.HAS_POINT_LIGHTS |= light.kind == CLR_LIGHT_POINT ? 1 : 0;
         flat.config.HAS_SPHERE_LIGHTS |= light.kind == CLR_LIGHT_SPHERE ? 1 : 0;
@@ -232,14 +255,26 @@ void flatten_lights(Flattening &work) {
         flat.config.HAS_TRIANGLE_LIGHTS |= light.kind == CLR_LIGHT_TRIANGLE ? 1 : 0;
     }
     flat.lights = list.lights;
-    flat.frame.light_count = static_cast<uint>(flat.lights.size());
-    if (!flat.lights.empty()) {
-        flat.light_alias = build_alias_table(probability);
-        flat.config.LIGHT_COUNT = flat.lights.size() == 1 ? 1 : -1;
-        const Light &first = flat.lights.front();
-        if (flat.lights.size() == 1 && first.kind == CLR_LIGHT_SPHERE &&
-            flat.config.HAS_BVH_SPHERES == 0)
-            flat.config.SOLE_LIGHT_SPHERE = static_cast<int>(first.prim);
+    flat.config.LIGHT_COUNT = flat.lights.size() > 1 ? -1 : static_cast<int>(flat.lights.size());
+    if (flat.lights.size() > 1) {
+        LightTree tree = build_light_tree(list.extents);
+        for (std::size_t i = 0; i < flat.lights.size(); ++i)
+            flat.lights[i].trail = tree.trail[i];
+        flat.light_nodes = std::move(tree.nodes);
+        flat.config.HAS_ORIENTED_LIGHTS =
+            std::any_of(list.extents.begin(), list.extents.end(),
+                        [](const LightExtent &e) { return e.cosine > -1; })
+                ? 1
+                : 0;
+    } else if (flat.lights.size() == 1) {
+        // The only light needs no walk to tell its density.
+        const Light &sole = flat.lights.front();
+        if (sole.kind == CLR_LIGHT_TRIANGLE)
+            for (EmitterInfo &info : flat.emitters)
+                info.density = info.density > 0 ? 1 / sole.area : 0.0f;
+        if (sole.kind == CLR_LIGHT_SPHERE && flat.config.HAS_BVH_SPHERES == 0 &&
+            flat.config.ENVIRONMENT != 2)
+            flat.config.SOLE_LIGHT_SPHERE = static_cast<int>(sole.prim);
     }
 }
 

@@ -241,6 +241,7 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
     flat.config.TILE = entry.is_cpu || flat.config.FILTER == 3 ? cpu_tile : gpu_tile;
+    flat.config.SAMPLER = options.independent_sampler ? 1 : 0;
     flat.frame.seed = options.seed;
     flat.frame.total_samples = static_cast<uint>(spp);
     stats.lanes = flat.config.LANES;

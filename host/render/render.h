@@ -16,6 +16,7 @@ struct RenderOptions {
     std::string device = "auto";             ///< see choose_device()
     bool brute_force = false;                ///< test every triangle
     bool pixel_centers = false;              ///< all samples at pixel centres
+    bool independent_sampler = false;        ///< in place of Sobol' points
     int strategy = 0;                        ///< 0 MIS, 1 light sampling only, 2 BSDF sampling only
     int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
     int tile = 0;                            ///< work-items in one launch; 0: chosen

@@ -1,7 +1,7 @@
 /* Runs small device functions alone, for tests. One batch of LANES values a work-item, at any
    width. Reads `in`, writes what its name says to `out`. */
 
-#include "rng.clh"
+#include "sampler.clh"
 #include "sampling.clh"
 
 /* out: sine and cosine of 2 pi in, one after the other. */
@@ -54,5 +54,27 @@ __kernel void probe_frame(__global const float *in, __global float *out, uint co
         store_real(part[k], value);
         for (uint i = 0; i < LANES && first + i < count; ++i)
             out[6u * (first + i) + k] = value[i];
+    }
+}
+
+/* out: the pair `dimension` of pixel `pixel` + i / `samples` and sample `offset` + i % `samples`,
+   two floats each. */
+__kernel void probe_sampler_pair(__global float *out, uint pixel, uint offset, uint samples,
+                                 uint dimension, uint count) {
+    const uint first = (uint)get_global_id(0) * LANES;
+    uint pixels[LANES], sample[LANES];
+    float us[LANES], vs[LANES];
+    for (uint i = 0; i < LANES; ++i) {
+        pixels[i] = pixel + (first + i) / samples;
+        sample[i] = offset + (first + i) % samples;
+    }
+    Sampler sampler = sampler_init(1u, load_uint(pixels), load_uint(sample));
+    real u, v;
+    sampler_get_pair(sampler, dimension, &u, &v);
+    store_real(u, us);
+    store_real(v, vs);
+    for (uint i = 0; i < LANES && first + i < count; ++i) {
+        out[2u * (first + i)] = us[i];
+        out[2u * (first + i) + 1u] = vs[i];
     }
 }

@@ -34,7 +34,6 @@ typedef struct {
     float env_rotation[12]; /* rows of world-to-environment, each followed by 0 */
     uint env_width;         /* pixels of the map */
     uint env_height;
-    uint light_count;
     int max_depth; /* edges of the longest path; INT_MAX: unbounded */
     int rr_depth;  /* roulette from this depth on; INT_MAX: never */
     uint width;    /* of the picture (the crop window), pixels */
@@ -47,7 +46,7 @@ typedef struct {
     float filter_radius;  /* pixels */
     uint triangle_blocks; /* in the BVH's leaves */
     uint sphere_blocks;
-    uint pad2[5];
+    uint pad2[6];
 } FrameData;
 CLR_STATIC_SIZE(FrameData, 256);
 

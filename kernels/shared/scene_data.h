@@ -92,34 +92,34 @@ CLR_STATIC_SIZE(Material, 64);
 #define CLR_LIGHT_SPHERE 1u
 #define CLR_LIGHT_PLANAR 2u
 #define CLR_LIGHT_TRIANGLE 3u
-#define CLR_LIGHT_ENVIRONMENT 4u
 
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
-   light triangles. `inv_probability` is the inverse of
-   that of being chosen. Point: radiance holds the intensity,
-   times the square of the unit of length. Sphere: `area` holds the radius. */
+   light triangles; bit k of `trail` is the child taken at level k of the light tree. Point:
+   radiance holds the intensity, times the square of the unit of length. Sphere: `area` holds the
+   radius. */
 typedef struct {
     float position[3];
     uint kind;
     float radiance[3];
     uint texture;
     uint prim;
-    float inv_probability;
+    uint trail;
     float area;
     uint shape; /* of a sphere */
 } Light;
 CLR_STATIC_SIZE(Light, 48);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
-   sampling would have chosen this point: per unit area for planars and triangles, the probability
-   of being chosen for spheres (kind says which). */
+   sampling, once it has chosen the light, takes this point: per unit area for planars and for a
+   triangle that is the only light, 1 for spheres and for the other triangles (kind says which), 0
+   where it is never sampled. The light is `light`, for a triangle the primitive's number added. */
 typedef struct {
     float radiance[3];
     uint texture;
     float density;
     uint kind;
     float radius;
-    uint pad0;
+    uint light;
     float center[3];
     uint pad[5];
 } EmitterInfo;
@@ -140,12 +140,26 @@ typedef struct {
 } LightTriangle;
 CLR_STATIC_SIZE(LightTriangle, 112);
 
-/* Walker's alias table: entry i keeps its own index below `threshold`, else yields `alias`. */
+/* A node of the light tree: bounds of both children. Of each: the sphere around its lights and
+   their summed intensity (the largest radiant intensity in any direction, luminance); the index of
+   the child's node, or CLR_LIGHT_LEAF plus the light's; and the cone that holds the normals of its
+   lights, by its axis and the cosine and sine of its half angle. */
+#define CLR_LIGHT_LEAF 0x80000000u
+#define CLR_LIGHT_TREE_LEVELS 32
 typedef struct {
-    float threshold;
-    uint alias;
-} AliasEntry;
-CLR_STATIC_SIZE(AliasEntry, 8);
+    float center[3];
+    float radius2;
+    float intensity;
+    uint child;
+    float cosine;
+    float sine;
+} LightBounds;
+CLR_STATIC_SIZE(LightBounds, 32);
+typedef struct {
+    LightBounds bounds[2];
+    float axis[2][4];
+} LightNode;
+CLR_STATIC_SIZE(LightNode, 96);
 
 #define CLR_TEXTURE_BITMAP_U8 0u
 #define CLR_TEXTURE_BITMAP_F32 1u

@@ -15,6 +15,7 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.seed = how.seed;
     options.lanes = how.lanes;
     options.pixel_centers = how.pixel_centers;
+    options.independent_sampler = !how.sobol;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;
     RenderResult result = render_scene(scene, options);

@@ -18,6 +18,7 @@ struct TestRender {
     bool pixel_centers = false;
     int batch_blocks = 0; ///< as in RenderOptions
     int tile_items = 0;   ///< as in RenderOptions
+    bool sobol = false;   ///< independent samples, whose variance is what it looks like, if not
 };
 
 /// Renders on the machine's default device.

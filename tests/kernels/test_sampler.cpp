@@ -1,0 +1,125 @@
+/// The pairs of numbers that paths are made of: their order within a pixel, and that pixels and
+/// pairs know nothing of each other.
+
+#include "cl_test_device.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+using namespace clrender;
+using namespace clrender::test;
+
+namespace {
+
+struct Request {
+    cl_uint pixel = 0, offset = 0, samples = 1, dimension = 0, count = 1;
+};
+
+/// u and v of each, one after the other.
+std::vector<float> pairs(const ClTestDevice &device, const Request &r, int lanes = 8,
+                         int sampler = 0) {
+    const std::string options =
+        "-DLANES=" + std::to_string(lanes) + " -DSAMPLER=" + std::to_string(sampler);
+    cl::Kernel kernel(device.build("probes/function_probes.cl", options), "probe_sampler_pair");
+    const std::size_t count = r.count;
+    const cl::Buffer out = device.allocate(2 * count * sizeof(float));
+    kernel.setArg(0, out);
+    kernel.setArg(1, r.pixel);
+    kernel.setArg(2, r.offset);
+    kernel.setArg(3, r.samples);
+    kernel.setArg(4, r.dimension);
+    kernel.setArg(5, r.count);
+    device.run(kernel,
+               (count + static_cast<std::size_t>(lanes) - 1) / static_cast<std::size_t>(lanes), 1);
+    return device.download<float>(out, 2 * count);
+}
+
+/// Chi-square of points on a grid of side x side cells, in standard deviations from its mean.
+double deviation_from_uniform(const std::vector<double> &us, const std::vector<double> &vs,
+                              int side) {
+    std::vector<double> cells(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);
+    for (std::size_t i = 0; i < us.size(); ++i)
+        ++cells[static_cast<std::size_t>(us[i] * side) * static_cast<std::size_t>(side) +
+                static_cast<std::size_t>(vs[i] * side)];
+    const double expected = static_cast<double>(us.size()) / static_cast<double>(cells.size());
+    double chi2 = 0;
+    for (const double n : cells)
+        chi2 += (n - expected) * (n - expected) / expected;
+    const double freedom = static_cast<double>(cells.size()) - 1;
+    return (chi2 - freedom) / std::sqrt(2 * freedom);
+}
+
+} // namespace
+
+TEST_CASE("samples of a pixel are a (0, m, 2)-net in every pair", "[oclgrind]") {
+    const ClTestDevice device;
+    const int largest = small_tests() ? 4 : 9;
+    for (const cl_uint pixel : {0u, 12345u})
+        for (const cl_uint dimension : {0u, 2u, 41u})
+            for (int m = 1; m <= largest; m += 2)
+                for (const cl_uint block : {0u, 5u}) {
+                    const cl_uint n = 1u << m;
+                    const auto p = pairs(device, {pixel, block * n, n, dimension, n});
+                    // Every way to cut the square into 2^m equal boxes: one point in each.
+                    for (int a = 0; a <= m; ++a) {
+                        std::vector<int> hits(n, 0);
+                        for (std::size_t i = 0; i < n; ++i) {
+                            const auto column =
+                                static_cast<std::size_t>(p[2 * i] * static_cast<float>(1 << a));
+                            const auto row = static_cast<std::size_t>(
+                                p[2 * i + 1] * static_cast<float>(1 << (m - a)));
+                            ++hits.at((column << (m - a)) + row);
+                        }
+                        INFO("pixel " << pixel << ", dimension " << dimension << ", 2^" << m
+                                      << " samples of block " << block << ", 2^" << a
+                                      << " columns");
+                        REQUIRE(hits == std::vector<int>(n, 1));
+                    }
+                }
+}
+
+TEST_CASE("pairs are the same at every width", "[oclgrind]") {
+    const ClTestDevice device;
+    const Request some{7, 4000000000u, 50, 12, 150};
+    const auto narrow = pairs(device, some, 1);
+    for (const float v : narrow)
+        REQUIRE((v >= 0.0f && v < 1.0f));
+    for (const int lanes : {4, 8, 16})
+        CHECK(pairs(device, some, lanes) == narrow);
+}
+
+TEST_CASE("the n-th samples of all pixels fill the square evenly") {
+    const ClTestDevice device;
+    for (const int sampler : {0, 1})
+        for (const cl_uint sample : {0u, 1u, 63u}) {
+            const auto p = pairs(device, {0, sample, 1, 8, 1u << 16}, 8, sampler);
+            std::vector<double> u, v;
+            for (std::size_t i = 0; i < p.size(); i += 2) {
+                u.push_back(p[i]);
+                v.push_back(p[i + 1]);
+            }
+            INFO("sampler " << sampler << ", sample " << sample);
+            CHECK(std::abs(deviation_from_uniform(u, v, 16)) < 5);
+        }
+}
+
+TEST_CASE("numbers of different pairs, and of neighbouring pixels, do not go together") {
+    const ClTestDevice device;
+    // 16 samples of 4096 pixels: were the orders alike, some cells would stay empty.
+    const Request first{0, 0, 16, 4, 1u << 16};
+    const auto a = pairs(device, first);
+    const auto other_pair = pairs(device, {0, 0, 16, 6, 1u << 16});
+    const auto next_pixel = pairs(device, {1, 0, 16, 4, 1u << 16});
+    for (const std::size_t mine : {0, 1})
+        for (const std::size_t theirs : {0, 1}) {
+            std::vector<double> x, y, z;
+            for (std::size_t i = 0; i < a.size(); i += 2) {
+                x.push_back(a[i + mine]);
+                y.push_back(other_pair[i + theirs]);
+                z.push_back(next_pixel[i + theirs]);
+            }
+            CHECK(std::abs(deviation_from_uniform(x, y, 16)) < 5);
+            CHECK(std::abs(deviation_from_uniform(x, z, 16)) < 5);
+        }
+}
