@@ -26,6 +26,9 @@
 #define BOUNCE_ROULETTE 6u
 #define BOUNCE_DIMENSIONS 7u
 
+/* Bounces whose numbers are spread evenly over the samples of a pixel. */
+#define ORDERED_BOUNCES 2
+
 /* Lanes that have to be idle before new samples are started: starting costs the same for one lane
    as for all. */
 #define REFILL_LANES ((LANES + 1) / 2)
@@ -253,9 +256,11 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
 /* Direct light at diffuse surfaces: one sampled light each, behind a shadow ray. */
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                 vec3 albedo, int_l prim, real choice, mask_l diffuse) {
+                                 vec3 albedo, int_l prim, real choice, mask_l ordered,
+                                 mask_l diffuse) {
     vec3 o = ray_origin(surface, n);
-    LightSample light = light_sample(scene, o, n, choice, p->sampler, BOUNCE_LIGHT, diffuse);
+    LightSample light =
+        light_sample(scene, o, n, choice, p->sampler, BOUNCE_LIGHT, ordered, diffuse);
     real cosine = v3_dot(n, light.wi);
     mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
     if (!any_lane(wanted))
@@ -362,14 +367,15 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     cosine = fabs(cosine);
 
     real u_light, u_lobe, u1, u2;
-    sampler_get_pair(p->sampler, BOUNCE_CHOICES, &u_light, &u_lobe);
+    mask_l ordered = ilt(p->depth, int_of(ORDERED_BOUNCES));
+    sampler_get_pair(p->sampler, BOUNCE_CHOICES, ordered, &u_light, &u_lobe);
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
     if (any_lane(diffuse))
-        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, u_light, diffuse);
+        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, u_light, ordered, diffuse);
 #endif
 
-    sampler_get_pair(p->sampler, BOUNCE_BSDF, &u1, &u2);
+    sampler_get_pair(p->sampler, BOUNCE_BSDF, ordered, &u1, &u2);
     BsdfSample sample = bsdf_sample(bsdf, p->d, n, cosine, back, u_lobe, u1, u2);
     /* Lanes that have ended may go on computing nonsense: nothing of it is looked at. */
 #if HIDE_EMITTERS && HAS_AREA_EMITTERS

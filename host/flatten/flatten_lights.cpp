@@ -218,6 +218,38 @@ double environment_share(const std::vector<LightExtent> &extents, double power) 
                : std::clamp(pi * power / (pi * power + others), least_share, 1 - least_share);
 }
 
+/// The distance from any point of a light within which a sphere cannot come between: a line that
+/// meets the sphere leaves it no nearer than the point where a tangent would touch it, for the
+/// product of the distances of entry and exit is the tangent's square. 0 for no such distance.
+double shadow_free_distance(const LightExtent &light, const Sphere &sphere) {
+    const glm::dvec3 center(sphere.center[0], sphere.center[1], sphere.center[2]);
+    const double reach = glm::length(light.upper - light.lower) / 2;
+    const double nearest = glm::length((light.lower + light.upper) * 0.5 - center) - reach;
+    const double tangent2 = nearest * nearest - double{sphere.radius} * sphere.radius;
+    constexpr double margin = 0.999;
+    return nearest > 0 && tangent2 > 0 ? margin * std::sqrt(tangent2) : 0;
+}
+
+/// What is simpler where there is one light: it needs no walk to tell its density, it is never in
+/// its own way, and large spheres may be shown never to be.
+void set_sole_light(const LightExtent &extent, FlatScene &flat) {
+    const Light &sole = flat.lights.front();
+    if (sole.kind == CLR_LIGHT_TRIANGLE)
+        for (EmitterInfo &info : flat.emitters)
+            info.density = info.density > 0 ? 1 / sole.area : 0.0f;
+    if (flat.config.ENVIRONMENT == 2 || flat.config.HAS_BVH_SPHERES != 0)
+        return;
+    if (sole.kind == CLR_LIGHT_SPHERE)
+        flat.config.SOLE_LIGHT_SPHERE = static_cast<int>(sole.prim);
+    double distance = INFINITY;
+    for (int i = 0; i < flat.config.WIDE_COUNT; ++i)
+        if (i != flat.config.SOLE_LIGHT_SPHERE)
+            distance = std::min(
+                distance, shadow_free_distance(extent, flat.spheres[static_cast<std::size_t>(i)]));
+    flat.config.SHADOW_FREE_COUNT = distance > 0 ? flat.config.WIDE_COUNT : 0;
+    flat.frame.shadow_free_distance = static_cast<float>(distance);
+}
+
 } // namespace
 
 double luminance(const Rgb &c) {
@@ -267,14 +299,7 @@ void flatten_lights(Flattening &work) {
                 ? 1
                 : 0;
     } else if (flat.lights.size() == 1) {
-        // The only light needs no walk to tell its density.
-        const Light &sole = flat.lights.front();
-        if (sole.kind == CLR_LIGHT_TRIANGLE)
-            for (EmitterInfo &info : flat.emitters)
-                info.density = info.density > 0 ? 1 / sole.area : 0.0f;
-        if (sole.kind == CLR_LIGHT_SPHERE && flat.config.HAS_BVH_SPHERES == 0 &&
-            flat.config.ENVIRONMENT != 2)
-            flat.config.SOLE_LIGHT_SPHERE = static_cast<int>(sole.prim);
+        set_sole_light(list.extents.front(), flat);
     }
 }
 

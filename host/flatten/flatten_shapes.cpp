@@ -273,6 +273,20 @@ void make_records(FlatScene &flat) {
             std::memcpy(r.material, &flat.materials[material], sizeof(r.material));
         flat.records.push_back(r);
     }
+    // Few records lie field by field, filled up with empty ones.
+    if (flat.records.size() <= CLR_TABLE_SIZE) {
+        constexpr std::size_t fields = sizeof(PrimitiveRecord) / sizeof(float);
+        std::vector<PrimitiveRecord> table(CLR_TABLE_SIZE);
+        auto *to = reinterpret_cast<unsigned char *>(table.data());
+        for (std::size_t i = 0; i < flat.records.size(); ++i)
+            for (std::size_t field = 0; field < fields; ++field)
+                std::memcpy(to + (field * CLR_TABLE_SIZE + i) * sizeof(float),
+                            reinterpret_cast<const unsigned char *>(&flat.records[i]) +
+                                field * sizeof(float),
+                            sizeof(float));
+        flat.records = std::move(table);
+        flat.config.RECORD_TABLE = 1;
+    }
     const bool lane_wise_only = flat.shape_of.empty();
     flat.config.MATERIALS_IN_RECORDS = one_sided && lane_wise_only ? 1 : 0;
 }

@@ -28,11 +28,12 @@ typedef struct {
     float lens_x[3];
     float env_alpha; /* of camera rays that leave the scene */
     float lens_y[3];
-    float pad1;
-    float env_radiance[3];  /* of a constant environment */
-    float env_probability;  /* that light sampling chooses the environment */
-    float env_rotation[12]; /* rows of world-to-environment, each followed by 0 */
-    uint env_width;         /* pixels of the map */
+    float shadow_free_distance; /* from the only light, the first SHADOW_FREE_COUNT spheres
+                                   cannot come between it and a point that is nearer */
+    float env_radiance[3];      /* of a constant environment */
+    float env_probability;      /* that light sampling chooses the environment */
+    float env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
+    uint env_width;             /* pixels of the map */
     uint env_height;
     int max_depth; /* edges of the longest path; INT_MAX: unbounded */
     int rr_depth;  /* roulette from this depth on; INT_MAX: never */

@@ -4,6 +4,7 @@
    scaled by a power of two. Colours are linear sRGB. */
 
 #include "shared_types.h"
+#include "shared/table_size.h"
 
 CLR_SHARED_BEGIN
 
