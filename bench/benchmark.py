@@ -13,17 +13,10 @@ import shutil
 import sys
 import time
 
+from catalogue import TITLES
 from programs import BUILD, available_cores, use_cores
-
-if importlib.util.find_spec("numpy") is None:
-    sys.exit("error: this Python has no numpy. scripts/bench --install-peers makes one that has, and the "
-             "peers; or CLRENDER_PEER_PYTHON names one")
-
-import make_scenes  # noqa: E402
-import report  # noqa: E402
-from renderers import LABELS, Settings, find_llvm, installed  # noqa: E402
-from session import Session  # noqa: E402
-from summary import summarise  # noqa: E402
+from renderers import LABELS, Settings, find_llvm, installed
+from session import Session
 
 FOLDER = BUILD / "bench"
 QUICK = {"renderers": ["clrender", "mitsuba-llvm"], "spp": [16, 64], "seeds": 3, "starts": 1}
@@ -49,8 +42,8 @@ def parse():
     parser.add_argument("--quick", action="store_true",
                         help="at most five minutes: clrender and Mitsuba llvm, fewer seeds and samples, always "
                              "anew, into build/bench/quick")
-    parser.add_argument("--only", type=words, default=list(make_scenes.SCENES), metavar="SCENE,...",
-                        help="these scenes: " + " ".join(make_scenes.SCENES))
+    parser.add_argument("--only", type=words, default=list(TITLES), metavar="SCENE,...",
+                        help="these scenes: " + " ".join(TITLES))
     parser.add_argument("--renderers", type=words, metavar="NAME,...",
                         help="these renderers: " + " ".join(LABELS))
     parser.add_argument("--spp", type=counts, metavar="N,...", help="sample counts (4,16,64,256)")
@@ -71,7 +64,7 @@ def parse():
     for name, value in usual.items():
         if getattr(arguments, name) is None:
             setattr(arguments, name, value)
-    for name, known in (("only", make_scenes.SCENES), ("renderers", LABELS)):
+    for name, known in (("only", TITLES), ("renderers", LABELS)):
         for word in getattr(arguments, name):
             if word not in known:
                 parser.error(f"--{name}: there is no {word}; known: {' '.join(known)}")
@@ -80,8 +73,15 @@ def parse():
     return arguments
 
 
+def need_numpy():
+    if importlib.util.find_spec("numpy") is None:
+        sys.exit("error: this Python has no numpy. scripts/bench --install-peers makes one that has, and "
+                 "the peers; or CLRENDER_PEER_PYTHON names one")
+
+
 def prepare_scenes(names):
-    """The scene files, made anew; files that did not change keep their content."""
+    """The scene files, made anew, with the same content every time."""
+    import make_scenes
     folder = FOLDER / "scenes"
     folder.mkdir(parents=True, exist_ok=True)
     for name in names:
@@ -89,17 +89,23 @@ def prepare_scenes(names):
     return [folder / f"{name}.xml" for name in names]
 
 
-def draw_plots(summaries, folder):
+def conclude(session, seeds, spps, folder):
+    """Prints the tables and writes them, and the plots."""
+    import report
+    import summary
+    summaries = summary.summarise(session, seeds, spps)
+    print("\n" + report.write_report(session, summaries, seeds, folder / "table.md"))
     if importlib.util.find_spec("matplotlib") is None:
         print("plots: left out, this Python has no matplotlib")
         return
-    from plots import plot
-    plot(summaries, folder)
+    import plots
+    plots.plot(summaries, folder)
 
 
 def main():
     started = time.monotonic()
     arguments = parse()
+    need_numpy()
     use_cores(arguments.cores)
     if find_llvm():
         os.environ["DRJIT_LIBLLVM_PATH"] = find_llvm()
@@ -118,10 +124,7 @@ def main():
         session.render(seeds, arguments.spp, started + QUICK_SECONDS if arguments.quick else None)
         session.start_up(arguments.starts, scenes[:1] if arguments.quick else scenes)
 
-    summaries = summarise(session, seeds, arguments.spp)
-    versions = {renderer.label: renderer.version() for renderer in renderers}
-    print("\n" + report.write_report(session, summaries, seeds, versions, folder / "table.md"))
-    draw_plots(summaries, folder)
+    conclude(session, seeds, arguments.spp, folder)
     print(f"Written to {folder.relative_to(BUILD.parent)}, after {time.monotonic() - started:.0f} s")
     return 1 if session.failures else 0
 

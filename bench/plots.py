@@ -8,49 +8,65 @@ import numpy as np
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import patheffects  # noqa: E402
 from matplotlib.ticker import LogFormatterMathtext, NullFormatter  # noqa: E402
+
+from catalogue import TITLES  # noqa: E402
 
 # Okabe and Ito's colours, which people with any colour vision can tell apart; and the markers differ.
 STYLES = {"clrender": ("#D55E00", "o"), "mitsuba-llvm": ("#0072B2", "s"), "mitsuba-scalar": ("#56B4E9", "D"),
           "luxcore": ("#009E73", "^"), "cycles": ("#CC79A7", "v")}
-TITLES = {
-    "room": "The report's room", "mesh": "A mesh in a box, small lamp", "sky": "Painted meshes, sky with a sun",
-    "glass": "Mirror and glass in a box", "lights": "400 sphere lights, 50 meshes",
-    "million": "A million triangles, sky and lamp", "spheres": "Ten thousand spheres",
-}
-INK, FAINT = "#333333", "#9a9a9a"
+INK, FAINT, PAPER = "#333333", "#9a9a9a", "#fbfbf9"
 
 
 def display(picture):
-    """Linear radiance as sRGB from 0 to 1, exposed so that the median is a middle grey."""
-    exposed = picture * (.2 / max(float(np.median(picture)), 1e-6))
+    """Linear radiance as sRGB from 0 to 1, exposed by its median."""
+    exposed = picture * (.4 / max(float(np.median(picture)), 1e-6))
     exposed = np.clip(exposed / (1 + .25 * exposed), 0, 1)
     return np.where(exposed <= .0031308, 12.92 * exposed, 1.055 * exposed ** (1 / 2.4) - .055)
 
 
 def limits(summary):
-    """The ranges of both axes, with room for the labels on the right."""
+    """The ranges of both axes, with room below the lines for their names."""
     points = [point for entry in summary.entries for point in entry.line()]
     (left, right), (low, high) = ((min(column), max(column)) for column in zip(*points))
-    width = max(right / left, 10)
-    return (left / width ** .06, left * width ** 1.32), (low / (high / low) ** .12, high * (high / low) ** .1)
+    width, height = max(right / left, 10), max(high / low, 10)
+    return (left / width ** .12, left * width ** 1.15), (low / height ** .3, high * height ** .08)
 
 
 def label_ends(axes, summary, size):
-    """Writes each renderer's name at the end of its line, moved up or down where names would overlap."""
-    gap = 1.25 * size * axes.figure.dpi / 72
+    """Writes each renderer's name below the end of its line, further down where names would overlap."""
+    pixels = axes.figure.dpi / 72
     placed = []
-    for entry in sorted(summary.entries, key=lambda entry: entry.line()[-1][1]):
+    for entry in sorted(summary.entries, key=lambda entry: entry.line()[-1][0]):
         x, y = axes.transData.transform(entry.line()[-1])
-        wide = .62 * size * len(entry.label) * axes.figure.dpi / 72
-        wanted = y
-        for other_x, other_y, other_wide in placed:
-            if other_x - wide < x < other_x + other_wide:
-                wanted = max(wanted, other_y + gap)
-        placed.append((x, wanted, wide))
-        axes.annotate(entry.label, entry.line()[-1], xytext=(.8 * size, (wanted - y) * 72 / axes.figure.dpi),
-                      textcoords="offset points", va="center", size=size, color=STYLES[entry.name][0],
-                      fontweight="bold" if entry.name == "clrender" else "normal")
+        half, high = .31 * size * len(entry.label) * pixels, 1.15 * size * pixels
+        below = y - .95 * high
+        for other_x, other_below, other_half in sorted(placed, key=lambda label: -label[1]):
+            if abs(x - other_x) < half + other_half and abs(below - other_below) < high:
+                below = other_below - high
+        placed.append((x, below, half))
+        label = axes.annotate(entry.label, entry.line()[-1], xytext=(0, (below - y) / pixels), ha="center",
+                              va="center", textcoords="offset points", size=size,
+                              color=STYLES[entry.name][0], zorder=4,
+                              fontweight="bold" if entry.name == "clrender" else "normal")
+        label.set_path_effects([patheffects.withStroke(linewidth=3, foreground=PAPER)])
+
+
+def label_guide(axes, size):
+    """Says on the lowest guide that is long enough what the guides are."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    for power in range(math.floor(math.log10(low * left)), math.ceil(math.log10(high * right))):
+        # The part of the guide inside of the axes, from one edge to another.
+        start, end = max(left, 10.0 ** power / high), min(right, 10.0 ** power / low)
+        if end > start * (right / left) ** .4:
+            middle = (start * end) ** .5
+            ends = axes.transData.transform([(start, 10.0 ** power / start), (end, 10.0 ** power / end)])
+            dx, dy = ends[1] - ends[0]
+            axes.text(middle, 10.0 ** power / middle, "equal efficiency", size=.75 * size, color=FAINT,
+                      rotation=math.degrees(math.atan2(dy, dx)), ha="center", va="center",
+                      rotation_mode="anchor", backgroundcolor=PAPER, zorder=1)
+            return
 
 
 def draw(axes, summary, size=10):
@@ -59,7 +75,7 @@ def draw(axes, summary, size=10):
     (left, right), (low, high) = limits(summary)
     axes.set_xlim(left, right)
     axes.set_ylim(low, high)
-    axes.set_facecolor("#fbfbf9")
+    axes.set_facecolor(PAPER)
     # Along a guide the efficiency is the same; from one to the next it is ten times as high.
     for power in range(math.floor(math.log10(low * left)), math.ceil(math.log10(high * right)) + 1):
         axes.plot([left, right], [10.0 ** power / left, 10.0 ** power / right], color="#dcdcd6",
@@ -79,12 +95,12 @@ def draw(axes, summary, size=10):
         axis.set_major_formatter(LogFormatterMathtext())
     axes.tick_params(which="both", colors=INK, labelsize=.9 * size)
     axes.tick_params(which="minor", color=FAINT, length=2)
-    axes.set_title(TITLES.get(summary.name, summary.name), loc="left", size=1.2 * size, color=INK, pad=size)
+    axes.set_title(TITLES[summary.name], loc="left", size=1.2 * size, color=INK, pad=size)
 
 
 def add_picture(axes, summary):
     """The scene itself, small, in the corner where the lines are not."""
-    inset = axes.inset_axes([.66, .68, .34, .34])
+    inset = axes.inset_axes([.02, .03, .3, .3])
     entry = summary.entries[0]
     inset.imshow(display(entry.stack.mean(0)), interpolation="lanczos")
     inset.set_axis_off()
@@ -94,7 +110,7 @@ def annotate_samples(axes, summary, size):
     """The sample counts beside the points of the first renderer."""
     for point, (x, y) in zip(summary.entries[0].points, summary.entries[0].line()):
         axes.annotate(f"{point.spp} spp" if point is summary.entries[0].points[0] else str(point.spp), (x, y),
-                      xytext=(-.5 * size, -.9 * size), textcoords="offset points", ha="right", va="center",
+                      xytext=(-.75 * size, -.3 * size), textcoords="offset points", ha="right", va="center",
                       size=.8 * size, color=INK)
 
 
@@ -106,6 +122,7 @@ def plot_scene(summary, path):
     add_picture(axes, summary)
     annotate_samples(axes, summary, 10)
     figure.canvas.draw()
+    label_guide(axes, 10)
     label_ends(axes, summary, 10)
     figure.savefig(path)
     plt.close(figure)

@@ -1,6 +1,7 @@
 """The Markdown tables of a benchmark."""
 
 import datetime
+import math
 import pathlib
 import re
 
@@ -11,7 +12,7 @@ from summary import TARGETS
 
 def figure(value, digits=3):
     """A number with so many significant digits, without an exponent where that is readable."""
-    if value is None:
+    if value is None or not math.isfinite(value):
         return "–"
     if value != 0 and abs(value) < 1e-2:
         return f"{value:.{digits - 1}e}"
@@ -75,17 +76,17 @@ def bias(summaries):
         agreement = next((entry.agreement for entry in summary.entries if entry.agreement), None)
         ours = ["–"] * 3 if not agreement else [
             f"{100 * agreement.difference:+.2f}%", f"{agreement.z_mean:+.1f}",
-            f"{agreement.z_blocks:.2f} ({agreement.z_expected:.2f})"]
+            f"{agreement.z_blocks:.2f} ({figure(agreement.z_expected)})"]
         rows.append([summary.name, *[cells.get(name, "–") for name in labels], *ours])
     return markdown(["scene", *labels.values(), "clrender - Mitsuba", "z of the mean",
                      "z of blocks (unbiased)"], rows)
 
 
-def write_report(session, summaries, seeds, versions, path):
+def write_report(session, summaries, seeds, path):
     """Writes the report of a session and returns its text."""
     settings = session.settings
     spps = sorted({entry.head.spp for summary in summaries for entry in summary.entries})
-    programs = ", ".join(f"{label} {version}" for label, version in versions.items())
+    programs = ", ".join(f"{renderer.label} {renderer.version()}" for renderer in session.renderers)
     roulette = "no roulette" if settings.rr_depth > settings.max_depth else f"roulette from {settings.rr_depth}"
     parts = [
         f"# Run time against error\n\n{datetime.date.today()}, {machine(settings.cores)}. {programs}. "

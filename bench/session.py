@@ -16,7 +16,7 @@ class Session:
 
     def __init__(self, folder, scenes, renderers, settings):
         self.scenes, self.renderers, self.settings = scenes, renderers, settings
-        self.pictures = folder / "pictures"
+        self.folder = folder
         folder.mkdir(parents=True, exist_ok=True)
         self.runs, self.starts = results.runs_table(folder), results.starts_table(folder)
         self.subjects = {(scene, renderer.name): results.subject(scene, renderer, settings)
@@ -44,12 +44,13 @@ class Session:
         wanted = [spp for spp in spps if not self.has(subject, seed, spp)]
         if not wanted or (scene.stem, renderer.name) in self.failures:
             return
-        prefix = self.pictures / scene.stem / f"{renderer.name}_{seed}"
+        prefix = self.folder / "pictures" / scene.stem / f"{renderer.name}_{seed}"
         prefix.parent.mkdir(parents=True, exist_ok=True)
         say(f"round {position}  {scene.stem:8} {renderer.name:14} seed {seed}:", end="")
         try:
             for run in renderer.render(scene, prefix, wanted, seed, self.settings):
-                self.runs.add({**subject, "seed": seed, **dataclasses.asdict(run)})
+                picture = pathlib.Path(run.picture).relative_to(self.folder)
+                self.runs.add({**subject, "seed": seed, **dataclasses.asdict(run), "picture": picture})
                 say(f"  {run.spp} spp {run.seconds:.3g} s", end="")
             say("")
         except Failed as failure:
@@ -58,7 +59,11 @@ class Session:
 
     def has(self, subject, seed, spp):
         row = self.runs.find({**subject, "seed": seed, "spp": spp})
-        return row is not None and pathlib.Path(row["picture"]).is_file()
+        return row is not None and self.picture(row).is_file()
+
+    def picture(self, row):
+        """The path of a row's picture."""
+        return self.folder / row["picture"]
 
     def start_up(self, repeats, scenes):
         """Times whole processes at one sample a pixel, with and without kernel caches."""

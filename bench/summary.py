@@ -64,7 +64,7 @@ def summarise_renderer(session, scene, renderer, seeds, spps):
         return None
     points = []
     for spp, rows in measured.items():
-        stack = np.stack([noise.read_picture(row["picture"]) for row in rows])
+        stack = np.stack([noise.read_picture(session.picture(row)) for row in rows])
         seconds = statistics.median(float(row["seconds"]) for row in rows)
         pixels = stack.shape[1] * stack.shape[2]
         rate = statistics.median(pixels * float(row["real_spp"]) / float(row["seconds"]) for row in rows)
