@@ -11,10 +11,10 @@ from summary import TARGETS
 
 
 def figure(value, digits=3):
-    """A number with so many significant digits, without an exponent where that is readable."""
+    """A number with so many significant digits, with an exponent where it is very small or large."""
     if value is None or not math.isfinite(value):
         return "–"
-    if value != 0 and abs(value) < 1e-2:
+    if value != 0 and not 1e-2 <= abs(value) < 1e5:
         return f"{value:.{digits - 1}e}"
     return f"{value:.{digits}g}" if abs(value) < 10 ** digits else f"{value:.0f}"
 

@@ -57,9 +57,8 @@ def render(target, spp, seed):
     return time.perf_counter() - start
 
 
-def picture(target, file):
-    """The last render, through a file: Blender has no other way to its floats."""
-    bpy.data.images["Render Result"].save_render(file, scene=target)
+def read_picture(file):
+    """The float picture of a file that Blender wrote."""
     image = bpy.data.images.load(file)
     image.colorspace_settings.name = "Non-Color"
     width, height = image.size
@@ -79,10 +78,16 @@ def main():
     if max(arguments.spp) > 1:
         render(target, 1, 0)  # builds the trees and tables, which stay
     load = time.perf_counter() - start
+
+    # Blender gives its floats to files only. They are read when all is rendered: an image that comes
+    # and goes makes the next render send every mesh to Cycles again.
+    seconds = {}
     for spp in arguments.spp:
-        seconds = render(target, spp, arguments.seed * 1000 + spp)
-        protocol.deliver(OUTPUT, arguments.prefix, spp, picture(target, arguments.prefix + ".exr"),
-                         seconds, load)
+        seconds[spp] = render(target, spp, arguments.seed * 1000 + spp)
+        bpy.data.images["Render Result"].save_render(f"{arguments.prefix}_{spp}.exr", scene=target)
+    for spp in arguments.spp:
+        picture = read_picture(f"{arguments.prefix}_{spp}.exr")
+        protocol.deliver(OUTPUT, arguments.prefix, spp, picture, seconds[spp], load)
 
 
 main()
