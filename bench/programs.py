@@ -32,13 +32,16 @@ def launch(command, timeout, environment=None):
         report, errors = (pathlib.Path(folder) / name for name in ("report.json", "errors"))
         launcher = [sys.executable, "-I", "-S", BENCH / "launch.py", timeout, report, *command]
         with open(errors, "wb") as stderr:
-            output = run(launcher, stderr=stderr, cwd=BENCH,
-                         env={**os.environ, **(environment or {})})
+            output = subprocess.run([str(word) for word in launcher], text=True, cwd=BENCH,
+                                    stdout=subprocess.PIPE, stderr=stderr,
+                                    env={**os.environ, **(environment or {})}).stdout
+        last = errors.read_text(errors="replace").strip().splitlines()[-1:]
+        if not report.is_file():
+            raise Failed(": ".join(["cannot be started", *last]))
         figures = json.loads(report.read_text())
         if figures["code"] != 0:
-            ending = ("no end after %g s" % timeout if figures["code"] is None
+            ending = (f"no end after {timeout:g} s" if figures["code"] is None
                       else f"exit code {figures['code']}")
-            last = errors.read_text(errors="replace").strip().splitlines()[-1:]
             raise Failed(": ".join([ending, *last]))
         return output, figures["seconds"], figures["peak_mib"]
 

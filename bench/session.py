@@ -24,12 +24,12 @@ class Session:
         self.failures, self.skipped = {}, []
 
     def render(self, seeds, spps, deadline=None):
-        """One round for each seed and scene. deadline (time.monotonic()): the rounds after the second
+        """One round for each seed and scene. deadline (time.monotonic()): the rounds after the first
         that would probably not end before it are left out."""
         took = {}
         for number, seed in enumerate(seeds):
             for scene in self.scenes:
-                if deadline and number >= 2 and time.monotonic() + took[scene] > deadline:
+                if deadline and number and time.monotonic() + took[scene] > deadline:
                     self.skipped.append((scene.stem, seed))
                     continue
                 start = time.monotonic()

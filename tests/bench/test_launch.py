@@ -28,6 +28,10 @@ class Launch(unittest.TestCase):
         with self.assertRaisesRegex(programs.Failed, "exit code 3: why"):
             programs.launch(["sh", "-c", "echo first >&2; echo why >&2; exit 3"], 60)
 
+    def test_a_command_that_is_not_there(self):
+        with self.assertRaisesRegex(programs.Failed, "cannot be started"):
+            programs.launch(["./there-is-no-such-program"], 60)
+
     def test_what_does_not_end_is_killed(self):
         with self.assertRaisesRegex(programs.Failed, "no end after 0.3 s"):
             programs.launch(["sh", "-c", "sleep 60 & sleep 60"], .3)
