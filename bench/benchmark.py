@@ -2,8 +2,8 @@
 """Run time against error: clrender and other renderers on the same scenes, taking turns in one run.
 
 Writes into build/bench/results: runs.csv and starts.csv (a row as soon as it is measured; what is
-already there is not measured again), table.md, a plot for each scene and overview.png. docs/benchmark.md
-says what is measured and how. Wants an idle machine.
+already there is not measured again), table.md, a plot for each scene and overview.png.
+docs/benchmark.md says what is measured and how. Wants an idle machine.
 """
 
 import argparse
@@ -20,6 +20,7 @@ from session import Session
 
 FOLDER = BUILD / "bench"
 QUICK = {"renderers": ["clrender", "mitsuba-llvm"], "spp": [16, 64], "seeds": 3, "starts": 1}
+FULL = {"renderers": list(LABELS), "spp": [4, 16, 64, 256], "seeds": 4, "starts": 2}
 QUICK_SECONDS = 240  # for the rounds; scenes, start-up and tables take the rest of five minutes
 
 
@@ -40,8 +41,8 @@ def parse():
     parser = argparse.ArgumentParser(prog="scripts/bench", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true",
-                        help="at most five minutes: clrender and Mitsuba llvm, fewer seeds and samples, always "
-                             "anew, into build/bench/quick")
+                        help="at most five minutes: clrender and Mitsuba llvm, fewer seeds and "
+                             "samples, always anew, into build/bench/quick")
     parser.add_argument("--only", type=words, default=list(TITLES), metavar="SCENE,...",
                         help="these scenes: " + " ".join(TITLES))
     parser.add_argument("--renderers", type=words, metavar="NAME,...",
@@ -49,18 +50,22 @@ def parse():
     parser.add_argument("--spp", type=counts, metavar="N,...", help="sample counts (4,16,64,256)")
     parser.add_argument("--seeds", type=int, help="independent runs of each, at least 2 (4)")
     parser.add_argument("--starts", type=int, help="warm and cold starts of each (2)")
-    parser.add_argument("--resolution", type=size, default=(320, 240), metavar="WxH", help="(320x240)")
+    parser.add_argument("--resolution", type=size, default=(320, 240), metavar="WxH",
+                        help="(320x240)")
     parser.add_argument("--max-depth", type=int, default=10, help="longest path in segments (10)")
     parser.add_argument("--rr-depth", type=int, default=1000000,
                         help="depth from which roulette ends paths, for everyone (never)")
-    parser.add_argument("--cores", type=int, default=available_cores(), help="for each renderer (all)")
-    parser.add_argument("--timeout", type=float, default=1800, help="seconds for one process (1800)")
-    parser.add_argument("--fresh", action="store_true", help="forgets what has been measured before")
-    parser.add_argument("--report", action="store_true", help="measures nothing: tables and plots only")
+    parser.add_argument("--cores", type=int, default=available_cores(),
+                        help="for each renderer (all)")
+    parser.add_argument("--timeout", type=float, default=1800,
+                        help="seconds for one process (1800)")
+    parser.add_argument("--fresh", action="store_true",
+                        help="forgets what has been measured before")
+    parser.add_argument("--report", action="store_true",
+                        help="measures nothing: tables and plots only")
     arguments = parser.parse_args()
 
-    usual = QUICK if arguments.quick else {"renderers": list(LABELS), "spp": [4, 16, 64, 256], "seeds": 4,
-                                           "starts": 2}
+    usual = QUICK if arguments.quick else FULL
     for name, value in usual.items():
         if getattr(arguments, name) is None:
             setattr(arguments, name, value)
@@ -75,8 +80,8 @@ def parse():
 
 def need_numpy():
     if importlib.util.find_spec("numpy") is None:
-        sys.exit("error: this Python has no numpy. scripts/bench --install-peers makes one that has, and "
-                 "the peers; or CLRENDER_PEER_PYTHON names one")
+        sys.exit("error: this Python has no numpy. scripts/bench --install-peers makes one that "
+                 "has, and the peers; or CLRENDER_PEER_PYTHON names one")
 
 
 def prepare_scenes(names):
@@ -114,8 +119,8 @@ def main():
     if arguments.fresh or (arguments.quick and not arguments.report):
         shutil.rmtree(folder, ignore_errors=True)
     scenes = prepare_scenes(arguments.only)
-    settings = Settings(*arguments.resolution, arguments.max_depth, arguments.rr_depth, arguments.cores,
-                        arguments.timeout)
+    settings = Settings(*arguments.resolution, arguments.max_depth, arguments.rr_depth,
+                        arguments.cores, arguments.timeout)
     renderers = installed(arguments.renderers)
     session = Session(folder, scenes, renderers, settings)
     seeds = range(1, arguments.seeds + 1)
@@ -125,7 +130,8 @@ def main():
         session.start_up(arguments.starts, scenes[:1] if arguments.quick else scenes)
 
     conclude(session, seeds, arguments.spp, folder)
-    print(f"Written to {folder.relative_to(BUILD.parent)}, after {time.monotonic() - started:.0f} s")
+    took = time.monotonic() - started
+    print(f"Written to {folder.relative_to(BUILD.parent)}, after {took:.0f} s")
     return 1 if session.failures else 0
 
 

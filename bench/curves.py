@@ -17,8 +17,8 @@ def geometric_mean(values):
 
 
 def slope(points):
-    """Least-squares slope of log(error) over log(seconds) of points (seconds, error); None where the
-    points do not define one."""
+    """Least-squares slope of log(error) over log(seconds) of points (seconds, error); None where
+    the points do not define one."""
     logs = [(math.log(seconds), math.log(error)) for seconds, error in points]
     mean_x, mean_y = (math.fsum(column) / len(logs) for column in zip(*logs))
     width = math.fsum((x - mean_x) ** 2 for x, _ in logs)
@@ -33,9 +33,9 @@ class TimeTo:
 
 
 def time_to(error, points):
-    """When the line through the points (seconds, error), straight between neighbours on log-log axes,
-    reaches an error. Outside of them it goes on from the nearest one with the slope of all. None with
-    fewer than two points or where the error does not fall."""
+    """When the line through the points (seconds, error), straight between neighbours on log-log
+    axes, reaches an error. Outside of them it goes on from the nearest one with the slope of all.
+    None with fewer than two points or where the error does not fall."""
     points = sorted(points)
     if len(points) < 2:
         return None

@@ -2,9 +2,9 @@
 
 usage: launch.py TIMEOUT REPORT.json COMMAND...
 
-A program of its own because Linux counts the memory of the process that starts another into the peak
-of the one that is started: this one is small. The command gets a session of its own, all of which is
-killed when TIMEOUT seconds are over or the launcher is interrupted.
+A program of its own because Linux counts the memory of the process that starts another into the
+peak of the one that is started: this one is small. The command gets a session of its own, all of
+which is killed when TIMEOUT seconds are over or the launcher is interrupted.
 """
 
 import json

@@ -3,9 +3,9 @@
 
 usage: make_scenes.py FOLDER [SCENE...]      all scenes, or those named; needs numpy
 
-Every scene has the defaults width, height, max_depth and rr_depth (10 segments and no roulette where
-nobody says otherwise), a box filter, and nothing that one of the renderers cannot do. The same files
-come out of every run.
+Every scene has the defaults width, height, max_depth and rr_depth (10 segments and no roulette
+where nobody says otherwise), a box filter, and nothing that one of the renderers cannot do. The
+same files come out of every run.
 """
 
 import math
@@ -23,14 +23,15 @@ from programs import BENCH, BUILD, BUNNY, ROOT, run
 SIZE = {"width": "320", "height": "240", "max_depth": "10", "rr_depth": "1000000"}
 
 
-# --- pieces of XML ------------------------------------------------------------------------------------
+# --- pieces of XML ----------------------------------------------
 
 def numbers(values):
     return ", ".join(f"{value:.6g}" for value in values)
 
 
 def diffuse(name, colour):
-    return f'<bsdf type="diffuse" id="{name}"><rgb name="reflectance" value="{numbers(colour)}"/></bsdf>'
+    return (f'<bsdf type="diffuse" id="{name}">'
+            f'<rgb name="reflectance" value="{numbers(colour)}"/></bsdf>')
 
 
 def textured(name, file):
@@ -85,7 +86,8 @@ def box(half_width, height, near, far):
     """A closed room: floor at y = 0, z from far to near, one side red and one green."""
     depth, middle, up = (near - far) / 2, (near + far) / 2, height / 2
     return [
-        diffuse("white", (.7, .7, .7)), diffuse("red", (.6, .1, .1)), diffuse("green", (.1, .5, .1)),
+        diffuse("white", (.7, .7, .7)), diffuse("red", (.6, .1, .1)),
+        diffuse("green", (.1, .5, .1)),
         rectangle(half_width, depth, ("x", -90), (0, 0, middle), "white"),
         rectangle(half_width, depth, ("x", 90), (0, height, middle), "white"),
         rectangle(half_width, up, None, (0, up, far), "white"),
@@ -97,7 +99,8 @@ def box(half_width, height, near, far):
 
 def write_scene(folder, name, origin, target, fov, parts):
     """One scene file; fov is horizontal, in degrees."""
-    defaults = "\n".join(f'    <default name="{key}" value="{value}"/>' for key, value in SIZE.items())
+    defaults = "\n".join(f'    <default name="{key}" value="{value}"/>'
+                         for key, value in SIZE.items())
     body = "\n".join("    " + part for part in parts)
     (folder / f"{name}.xml").write_text(f"""<scene version="3.0.0">
 {defaults}
@@ -123,7 +126,7 @@ def write_scene(folder, name, origin, target, fov, parts):
 """)
 
 
-# --- the sky ------------------------------------------------------------------------------------------
+# --- the sky ----------------------------------------------------
 
 def write_radiance(picture, path):
     """A Radiance .hdr file of a float array (height, width, 3), without compression."""
@@ -162,7 +165,7 @@ def write_sky(path, elevation, azimuth, diameter=3.0, height=512):
     write_radiance(picture * (1 - cover) + cover * np.array([2600., 2300., 1900.]), path)
 
 
-# --- the scenes ---------------------------------------------------------------------------------------
+# --- the scenes -------------------------------------------------
 
 def make_room(folder):
     """The report's room: scenes/spheres.xml with its defaults, in this size. Its camera turns the
@@ -176,8 +179,9 @@ def make_room(folder):
 
 
 def make_mesh(folder):
-    """A mesh of 70 thousand triangles in a diffuse box under a small lamp (bench/scenes/mesh_box.xml):
-    the Stanford bunny where it is present, else the project's own creature."""
+    """A mesh of 70 thousand triangles in a diffuse box under a small lamp
+    (bench/scenes/mesh_box.xml): the Stanford bunny where it is present, else the project's own
+    creature."""
     source = BUNNY
     if not source.is_file():
         source = folder / "creature.obj"
@@ -228,7 +232,8 @@ def make_lights(folder):
         power = 10 ** draw.uniform(-2, 1)  # of pi * area * radiance
         tint = [.4 + .6 * draw.random() for _ in range(3)]
         place = draw.uniform(-6.5, 6.5), draw.uniform(1, 3.2), draw.uniform(-5, 3)
-        parts.append(sphere(place, radius, [power * c / (4 * math.pi ** 2 * radius ** 2) for c in tint]))
+        radiance = [power * c / (4 * math.pi ** 2 * radius ** 2) for c in tint]
+        parts.append(sphere(place, radius, radiance))
     write_scene(folder, "lights", (0, 4, 8.5), (0, .7, -1), 50, parts)
 
 
@@ -242,18 +247,17 @@ def make_million(folder):
 
 
 def make_spheres(folder):
-    """Ten thousand spheres on a ground, a tenth of them mirrors, under a lamp and a faint sky."""
+    """Ten thousand diffuse spheres on a ground, under a lamp and a faint sky."""
     draw = random.Random(7)
     parts = ['<emitter type="constant"><rgb name="radiance" value="0.12, 0.14, 0.18"/></emitter>',
-             MIRROR, diffuse("ground", (.4, .4, .4)), ground(40, "ground")]
+             diffuse("ground", (.4, .4, .4)), ground(40, "ground")]
     for kind in range(6):
         parts.append(diffuse(f"paint{kind}", [.2 + .6 * draw.random() for _ in range(3)]))
     for i in range(10000):
         radius = draw.uniform(.03, .075)
         x, z = (.12 * (cell - 49.5) + draw.uniform(-.02, .02) for cell in (i % 100, i // 100))
         y = radius + .4 * draw.random() ** 4
-        surface = "mirror" if draw.random() < .1 else f"paint{draw.randrange(6)}"
-        parts.append(sphere((x, y, z), radius, surface))
+        parts.append(sphere((x, y, z), radius, f"paint{draw.randrange(6)}"))
     parts.append(rectangle(.8, .8, ("x", 90), (1, 3.5, 0), (22, 20, 17)))
     write_scene(folder, "spheres", (0, 2.2, 5.2), (0, 0, .9), 42, parts)
 

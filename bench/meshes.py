@@ -1,4 +1,5 @@
-"""Triangle meshes of the benchmark's scenes: reading OBJ, writing PLY, and a few made from formulas.
+"""Triangle meshes of the benchmark's scenes: reading OBJ, writing PLY, and a few made from
+formulas.
 
 A mesh is a Mesh of numpy arrays. Everything is deterministic: the random numbers come from
 random.Random, whose sequence is the same in every version of Python.
@@ -14,8 +15,8 @@ import numpy as np
 
 @dataclasses.dataclass
 class Mesh:
-    """points (n, 3), triangles (m, 3) of indices; normals (n, 3) and uvs (n, 2) where there are any.
-    uv follows Mitsuba's PLY: v = 0 is the first row of the texture."""
+    """points (n, 3), triangles (m, 3) of indices; normals (n, 3) and uvs (n, 2) where there are
+    any. uv follows Mitsuba's PLY: v = 0 is the first row of the texture."""
     points: np.ndarray
     triangles: np.ndarray
     normals: np.ndarray | None = None
@@ -83,7 +84,8 @@ def icosphere(level):
     golden = (1 + 5 ** .5) / 2
     points = np.array([[x, y * golden, 0] for x in (-1, 1) for y in (-1, 1)])
     points = np.concatenate([np.roll(points, shift, axis=1) for shift in range(3)])
-    # Its triangles: three corners, all an edge (of length 2) apart, seen anticlockwise from outside.
+    # Its triangles: three corners, all an edge (of length 2) apart, seen anticlockwise from
+    # outside.
     near = np.abs(np.linalg.norm(points[:, None] - points[None], axis=2) - 2) < 1e-9
     triangles = np.array([
         (i, j, k) if np.linalg.det(points[[i, j, k]]) > 0 else (i, k, j)

@@ -34,8 +34,8 @@ class Error:
 
 
 def relative_error(stack):
-    """relMSE = mean of variance/(mean² + 0.01), over pixels and channels; the unbiased variance between
-    the seeds is the squared error that one picture of them has on average."""
+    """relMSE = mean of variance/(mean² + 0.01), over pixels and channels; the unbiased variance
+    between the seeds is the squared error that one picture of them has on average."""
     mean, variance = stack.mean(0, dtype=float), stack.var(0, ddof=1, dtype=float)
     of_pixel = np.sort((variance / (mean ** 2 + .01)).mean(-1).ravel())
     kept = len(of_pixel) - round(TRIMMED * len(of_pixel))
@@ -45,8 +45,8 @@ def relative_error(stack):
 @dataclasses.dataclass(frozen=True)
 class Agreement:
     """How far two renderers' pictures are apart: the difference of the image means as a share, in
-    standard deviations, and the root mean square of the same over square blocks of pixels, beside the
-    value that blocks of two unbiased renderers would have."""
+    standard deviations, and the root mean square of the same over square blocks of pixels, beside
+    the value that blocks of two unbiased renderers would have."""
     difference: float
     z_mean: float
     z_blocks: float
@@ -54,7 +54,8 @@ class Agreement:
 
 
 def _block_means(stack):
-    """Mean of the channels in blocks of pixels, (seeds, blocks); incomplete ones at the edge are left out."""
+    """Mean of the channels in blocks of pixels, (seeds, blocks); incomplete ones at the edge are
+    left out."""
     seeds, height, width, _ = stack.shape
     rows, columns = height // BLOCK, width // BLOCK
     cut = stack[:, :rows * BLOCK, :columns * BLOCK].mean(-1, dtype=float)

@@ -13,9 +13,11 @@ from matplotlib.ticker import LogFormatterMathtext, NullFormatter  # noqa: E402
 
 from catalogue import TITLES  # noqa: E402
 
-# Okabe and Ito's colours, which people with any colour vision can tell apart; and the markers differ.
-STYLES = {"clrender": ("#D55E00", "o"), "mitsuba-llvm": ("#0072B2", "s"), "mitsuba-scalar": ("#56B4E9", "D"),
-          "luxcore": ("#009E73", "^"), "cycles": ("#CC79A7", "v")}
+# Okabe and Ito's colours, which people with any colour vision can tell apart; and the markers
+# differ.
+STYLES = {"clrender": ("#D55E00", "o"), "mitsuba-llvm": ("#0072B2", "s"),
+          "mitsuba-scalar": ("#56B4E9", "D"), "luxcore": ("#009E73", "^"),
+          "cycles": ("#CC79A7", "v")}
 INK, FAINT, PAPER = "#333333", "#9a9a9a", "#fbfbf9"
 
 
@@ -35,7 +37,8 @@ def limits(summary):
 
 
 def label_ends(axes, summary, size):
-    """Writes each renderer's name below the end of its line, further down where names would overlap."""
+    """Writes each renderer's name below the end of its line, further down where names would
+    overlap."""
     pixels = axes.figure.dpi / 72
     placed = []
     for entry in sorted(summary.entries, key=lambda entry: entry.line()[-1][0]):
@@ -46,8 +49,8 @@ def label_ends(axes, summary, size):
             if abs(x - other_x) < half + other_half and abs(below - other_below) < high:
                 below = other_below - high
         placed.append((x, below, half))
-        label = axes.annotate(entry.label, entry.line()[-1], xytext=(0, (below - y) / pixels), ha="center",
-                              va="center", textcoords="offset points", size=size,
+        label = axes.annotate(entry.label, entry.line()[-1], xytext=(0, (below - y) / pixels),
+                              textcoords="offset points", ha="center", va="center", size=size,
                               color=STYLES[entry.name][0], zorder=4,
                               fontweight="bold" if entry.name == "clrender" else "normal")
         label.set_path_effects([patheffects.withStroke(linewidth=3, foreground=PAPER)])
@@ -61,11 +64,11 @@ def label_guide(axes, size):
         start, end = max(left, 10.0 ** power / high), min(right, 10.0 ** power / low)
         if end > start * (right / left) ** .4:
             place = start ** .3 * end ** .7  # clear of the picture in the corner
-            ends = axes.transData.transform([(start, 10.0 ** power / start), (end, 10.0 ** power / end)])
-            dx, dy = ends[1] - ends[0]
-            axes.text(place, 10.0 ** power / place, "equal efficiency", size=.75 * size, color=FAINT,
-                      rotation=math.degrees(math.atan2(dy, dx)), ha="center", va="center",
-                      rotation_mode="anchor", backgroundcolor=PAPER, zorder=1)
+            ends = [(seconds, 10.0 ** power / seconds) for seconds in (start, end)]
+            dx, dy = np.diff(axes.transData.transform(ends), axis=0)[0]
+            axes.text(place, 10.0 ** power / place, "equal efficiency", size=.75 * size,
+                      rotation=math.degrees(math.atan2(dy, dx)), color=FAINT, ha="center",
+                      va="center", rotation_mode="anchor", backgroundcolor=PAPER, zorder=1)
             return
 
 
@@ -84,8 +87,8 @@ def draw(axes, summary, size=10):
         colour, marker = STYLES[entry.name]
         ours = entry.name == "clrender"
         axes.plot(*zip(*entry.line()), color=colour, marker=marker, linewidth=2.4 if ours else 1.5,
-                  markersize=.6 * size if ours else .5 * size, markeredgecolor="white", markeredgewidth=.8,
-                  zorder=3 if ours else 2, clip_on=False)
+                  markersize=.6 * size if ours else .5 * size, markeredgecolor="white",
+                  markeredgewidth=.8, zorder=3 if ours else 2, clip_on=False)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     for side in ("left", "bottom"):
@@ -108,10 +111,11 @@ def add_picture(axes, summary):
 
 def annotate_samples(axes, summary, size):
     """The sample counts beside the points of the first renderer."""
-    for point, (x, y) in zip(summary.entries[0].points, summary.entries[0].line()):
-        axes.annotate(f"{point.spp} spp" if point is summary.entries[0].points[0] else str(point.spp), (x, y),
-                      xytext=(-.75 * size, -.3 * size), textcoords="offset points", ha="right", va="center",
-                      size=.8 * size, color=INK)
+    first = summary.entries[0]
+    for i, place in enumerate(first.line()):
+        axes.annotate(f"{first.points[i].spp}{'' if i else ' spp'}", place, color=INK,
+                      xytext=(-.75 * size, -.3 * size), textcoords="offset points", ha="right",
+                      va="center", size=.8 * size)
 
 
 def plot_scene(summary, path):

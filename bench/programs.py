@@ -52,8 +52,8 @@ def available_cores():
 
 
 def use_cores(count):
-    """Gives this process and all that it starts the same cores. PoCL counts those of the machine, so
-    it is told besides."""
+    """Gives this process and all that it starts the same cores. PoCL counts those of the machine,
+    so it is told besides."""
     os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:count])
     os.environ["POCL_MAX_PTHREAD_COUNT"] = str(count)
 

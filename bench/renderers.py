@@ -27,8 +27,8 @@ class Settings:
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One picture. Seconds are wall time; peak_mib is resident memory. seconds: rendering alone; load:
-    reading the scene, building trees, compiling."""
+    """One picture. Seconds are wall time; peak_mib is resident memory. seconds: rendering alone;
+    load: reading the scene, building trees, compiling."""
     spp: int
     real_spp: float
     seconds: float
@@ -104,7 +104,8 @@ class Peer:
 
     def start(self, scene, prefix, settings, environment):
         """Wall seconds of a whole process that renders one sample a pixel."""
-        return launch(self.command(scene, prefix, [1], 1, settings), settings.timeout, environment)[1]
+        command = self.command(scene, prefix, [1], 1, settings)
+        return launch(command, settings.timeout, environment)[1]
 
 
 class MitsubaLlvm(Peer):

@@ -11,7 +11,8 @@ from summary import TARGETS
 
 
 def figure(value, digits=3):
-    """A number with so many significant digits, with an exponent where it is very small or large."""
+    """A number with so many significant digits, with an exponent where it is very small or
+    large."""
     if value is None or not math.isfinite(value):
         return "–"
     if value != 0 and not 1e-2 <= abs(value) < 1e5:
@@ -45,24 +46,31 @@ def overview(summaries):
     rows = []
     for summary in summaries:
         entries = {entry.name: entry for entry in summary.entries}
-        cells = [figure(entries[name].head.efficiency()) if name in entries else "–" for name in labels]
+        cells = [figure(entries[name].head.efficiency()) if name in entries else "–"
+                 for name in labels]
         best = summary.best.label if summary.best else "–"
-        rows.append([summary.name, *cells, best, f"**{figure(summary.ratio)}**", figure(summary.ratio_full)])
-    for title, key in (("geometric mean", curves.geometric_mean), ("smallest", lambda v: min(v, default=None))):
-        ratios = [[getattr(s, name) for s in summaries if getattr(s, name)] for name in ("ratio", "ratio_full")]
-        rows.append([title, *[""] * (len(labels) + 1), f"**{figure(key(ratios[0]))}**", figure(key(ratios[1]))])
+        rows.append([summary.name, *cells, best, f"**{figure(summary.ratio)}**",
+                     figure(summary.ratio_full)])
+    compared = [summary for summary in summaries if summary.best]
+    if compared:
+        ratios = [summary.ratio for summary in compared]
+        ratios_full = [summary.ratio_full for summary in compared]
+        for title, of in (("geometric mean", curves.geometric_mean), ("smallest", min)):
+            rows.append([title, *[""] * (len(labels) + 1), f"**{figure(of(ratios))}**",
+                         figure(of(ratios_full))])
     return markdown(["scene", *labels.values(), "best peer", "clrender / best", "untrimmed"], rows)
 
 
 def details(summary):
     header = ["renderer", "Mpaths/s", "relMSE", "untrimmed", "efficiency",
-              *[f"s to {target:g}" for target in TARGETS], "warm start s", "cold start s", "peak MiB"]
+              *[f"s to {target:g}" for target in TARGETS], "warm start s", "cold start s",
+              "peak MiB"]
     rows = []
     for entry in summary.entries:
         head = entry.head
-        rows.append([entry.label, figure(head.rate), figure(head.error.trimmed), figure(head.error.full),
-                     figure(head.efficiency()), *map(seconds, entry.times), figure(entry.warm),
-                     figure(entry.cold), figure(entry.peak_mib)])
+        figures = [head.rate, head.error.trimmed, head.error.full, head.efficiency()]
+        rows.append([entry.label, *map(figure, figures), *map(seconds, entry.times),
+                     *map(figure, (entry.warm, entry.cold, entry.peak_mib))])
     return markdown(header, rows)
 
 
@@ -87,23 +95,26 @@ def write_report(session, summaries, seeds, path):
     settings = session.settings
     spps = sorted({entry.head.spp for summary in summaries for entry in summary.entries})
     programs = ", ".join(f"{renderer.label} {renderer.version()}" for renderer in session.renderers)
-    roulette = "no roulette" if settings.rr_depth > settings.max_depth else f"roulette from {settings.rr_depth}"
+    roulette = ("no roulette" if settings.rr_depth > settings.max_depth
+                else f"roulette from {settings.rr_depth}")
     parts = [
-        f"# Run time against error\n\n{datetime.date.today()}, {machine(settings.cores)}. {programs}. "
-        f"{settings.width}x{settings.height}, box filter, depth {settings.max_depth}, {roulette}, "
-        f"{len(seeds)} seeds.\n",
-        f"Efficiency = 1/(relMSE x seconds) at {' and '.join(map(str, spps))} samples a pixel. relMSE = "
-        f"mean of variance/(mean² + 0.01) between the seeds, without the noisiest {100 * TRIMMED:g}% of "
-        "the pixels; the columns *untrimmed* are with them. Seconds of rendering only.\n",
+        f"# Run time against error\n\n{datetime.date.today()}, {machine(settings.cores)}. "
+        f"{programs}. {settings.width}x{settings.height}, box filter, depth {settings.max_depth}, "
+        f"{roulette}, {len(seeds)} seeds.\n",
+        f"Efficiency = 1/(relMSE x seconds) at {' and '.join(map(str, spps))} samples a pixel. "
+        "relMSE = mean of variance/(mean² + 0.01) between the seeds, without the noisiest "
+        f"{100 * TRIMMED:g}% of the pixels; the columns *untrimmed* are with them. Seconds of "
+        "rendering only.\n",
         overview(summaries),
     ]
     for summary in summaries:
         parts.append(f"## {summary.name}\n\n{details(summary)}")
-    parts.append("In italics: extrapolated. Starts are whole processes at one sample a pixel, cold with "
-                 "empty kernel caches. Peak: resident memory.\n")
-    parts.append("## Bias\n\nImage means against the median of all renderers; clrender against Mitsuba, "
-                 "also in standard deviations.\n\n" + bias(summaries))
-    left_out = [f"- {scene}, {renderer}: {reason}" for (scene, renderer), reason in session.failures.items()]
+    parts.append("In italics: extrapolated. Starts are whole processes at one sample a pixel, cold "
+                 "with empty kernel caches. Peak: resident memory.\n")
+    parts.append("## Bias\n\nImage means against the median of all renderers; clrender against "
+                 "Mitsuba, also in standard deviations.\n\n" + bias(summaries))
+    left_out = [f"- {scene}, {renderer}: {reason}"
+                for (scene, renderer), reason in session.failures.items()]
     left_out += [f"- {scene}: no time for seed {seed}" for scene, seed in session.skipped]
     if left_out:
         parts.append("## Left out\n\n" + "\n".join(left_out) + "\n")

@@ -1,4 +1,5 @@
-"""The CSV files of a benchmark: a row is appended as soon as it is measured, and found again later."""
+"""The CSV files of a benchmark: a row is appended as soon as it is measured, and found again
+later."""
 
 import csv
 import datetime

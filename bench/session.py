@@ -11,8 +11,8 @@ from renderers import start_seconds
 
 
 class Session:
-    """Measures into the tables of a folder. failures: (scene, renderer) -> reason; such a pair is not
-    tried again. skipped: the rounds that the time was too short for."""
+    """Measures into the tables of a folder. failures: (scene, renderer) -> reason; such a pair is
+    not tried again. skipped: the rounds that the time was too short for."""
 
     def __init__(self, folder, scenes, renderers, settings):
         self.scenes, self.renderers, self.settings = scenes, renderers, settings
@@ -24,8 +24,8 @@ class Session:
         self.failures, self.skipped = {}, []
 
     def render(self, seeds, spps, deadline=None):
-        """One round for each seed and scene. deadline (time.monotonic()): the rounds after the first
-        that would probably not end before it are left out."""
+        """One round for each seed and scene. deadline (time.monotonic()): the rounds after the
+        first that would probably not end before it are left out."""
         took = {}
         for number, seed in enumerate(seeds):
             for scene in self.scenes:
@@ -50,7 +50,8 @@ class Session:
         try:
             for run in renderer.render(scene, prefix, wanted, seed, self.settings):
                 picture = pathlib.Path(run.picture).relative_to(self.folder)
-                self.runs.add({**subject, "seed": seed, **dataclasses.asdict(run), "picture": picture})
+                self.runs.add({**subject, "seed": seed, **dataclasses.asdict(run),
+                               "picture": picture})
                 say(f"  {run.spp} spp {run.seconds:.3g} s", end="")
             say("")
         except Failed as failure:
@@ -98,8 +99,8 @@ class Session:
         return statistics.median(found) if found else None
 
     def measured(self, scene, renderer, seeds, spps):
-        """The rows of a renderer and scene: sample count -> rows of the seeds, where there are at least
-        two."""
+        """The rows of a renderer and scene: sample count -> rows of the seeds, where there are at
+        least two."""
         subject = self.subjects[scene, renderer.name]
         found = {}
         for spp in spps:

@@ -70,8 +70,9 @@ def spheres(arguments):
             raise RuntimeError(f"the prototype printed no line for {lanes} lanes")
 
         def clrender():
-            return clrender_rate(ROOT / "scenes" / "spheres.xml", WORK, "-r", f"{size}x{size}", "-s", spp,
-                                 "--max-depth", depth, "--rr-depth", 1000000, "--lanes", lanes)
+            return clrender_rate(ROOT / "scenes" / "spheres.xml", WORK, "-r", f"{size}x{size}",
+                                 "-s", spp, "--max-depth", depth, "--rr-depth", 1000000,
+                                 "--lanes", lanes)
 
         compare(f"spheres.xml, {lanes} lanes", arguments.rounds, clrender, "prototype", prototype)
 
@@ -88,8 +89,8 @@ def mesh(arguments):
     scene, pixels, spp = WORK / "mesh.xml", 320 * 240, 64
 
     def mitsuba():
-        lines = run([python, "-m", "peers.mitsuba_peer", "llvm_ad_rgb", scene, WORK / "mitsuba", spp,
-                     "--threads", available_cores()], cwd=BENCH).splitlines()
+        lines = run([python, "-m", "peers.mitsuba_peer", "llvm_ad_rgb", scene, WORK / "mitsuba",
+                     spp, "--threads", available_cores()], cwd=BENCH).splitlines()
         return pixels * spp / json.loads(lines[-1])["seconds"] * 1e-6
 
     def clrender():

@@ -48,8 +48,8 @@ class Entry:
 
 @dataclasses.dataclass
 class SceneSummary:
-    """best: the peer with the highest efficiency; the ratios are clrender's efficiency over the best
-    peer's, by the trimmed and by the full error; None without both."""
+    """best: the peer with the highest efficiency; the ratios are clrender's efficiency over the
+    best peer's, by the trimmed and by the full error; None without both."""
     name: str
     entries: list[Entry]
     best: Entry | None = None
@@ -67,15 +67,17 @@ def summarise_renderer(session, scene, renderer, seeds, spps):
         stack = np.stack([noise.read_picture(session.picture(row)) for row in rows])
         seconds = statistics.median(float(row["seconds"]) for row in rows)
         pixels = stack.shape[1] * stack.shape[2]
-        rate = statistics.median(pixels * float(row["real_spp"]) / float(row["seconds"]) for row in rows)
+        rate = statistics.median(pixels * float(row["real_spp"]) / float(row["seconds"])
+                                 for row in rows)
         points.append(Point(spp, seconds, rate * 1e-6, noise.relative_error(stack)))
     head = next((point for point in points if point.spp == HEADLINE), points[-1])
     line = [(point.seconds, point.error.trimmed) for point in points]
     peak = max(float(row["peak_mib"]) for rows in measured.values() for row in rows)
     return Entry(renderer.name, renderer.label, points, head,
                  [curves.time_to(target, line) for target in TARGETS],
-                 session.start_time(scene, renderer, False), session.start_time(scene, renderer, True),
-                 peak, float(stack.mean(dtype=float)), stack)
+                 session.start_time(scene, renderer, cold=False),
+                 session.start_time(scene, renderer, cold=True), peak,
+                 float(stack.mean(dtype=float)), stack)
 
 
 def summarise(session, seeds, spps):

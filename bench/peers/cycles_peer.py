@@ -1,7 +1,6 @@
 """Renders a scene with Blender's Cycles. usage: python -m peers.cycles_peer SCENE PREFIX SPP..."""
 
 import os
-import sys
 import time
 
 OUTPUT = os.fdopen(os.dup(1), "w")
@@ -16,14 +15,16 @@ from peers.scene_file import read_scene  # noqa: E402
 
 
 def configure(target, scene, threads):
-    """The same work as the others (depth, filter, nothing clamped, guided, adaptive or denoised), and
-    what makes Cycles fastest at it: its light tree, tabulated Sobol' points, spatial splits."""
+    """The same work as the others (depth, filter, nothing clamped, guided, adaptive or denoised),
+    and what makes Cycles fastest at it: its light tree, tabulated Sobol' points, spatial splits."""
     render, cycles, view = target.render, target.cycles, target.view_settings
     render.engine, cycles.device = "CYCLES", "CPU"
     render.threads_mode, render.threads = "FIXED", threads
-    render.resolution_x, render.resolution_y, render.resolution_percentage = scene.width, scene.height, 100
+    render.resolution_x, render.resolution_y = scene.width, scene.height
+    render.resolution_percentage = 100
     render.use_persistent_data = True
-    render.use_compositing = render.use_sequencer = render.use_simplify = render.use_motion_blur = False
+    render.use_compositing = render.use_sequencer = False
+    render.use_simplify = render.use_motion_blur = False
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_guiding = False
     cycles.use_auto_tile = False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = 0
@@ -32,8 +33,8 @@ def configure(target, scene, threads):
     cycles.pixel_filter_type, cycles.filter_width = "BOX", 1
     cycles.use_light_tree, cycles.debug_use_spatial_splits = True, True
     cycles.sampling_pattern = "TABULATED_SOBOL"
-    # Mitsuba counts the segments of a path, Cycles the bounces after direct light. A path that hits a
-    # light goes on behind it unless there are no transparent bounces.
+    # Mitsuba counts the segments of a path, Cycles the bounces after direct light. A path that hits
+    # a light goes on behind it unless there are no transparent bounces.
     bounces = max(0, scene.max_depth - 2)
     for name in ("max", "diffuse", "glossy", "transmission"):
         setattr(cycles, "max_bounces" if name == "max" else name + "_bounces", bounces)
@@ -49,8 +50,8 @@ def configure(target, scene, threads):
 def render(target, spp, seed):
     """Wall seconds of a render, from Blender's look at every object to the finished picture."""
     target.cycles.samples, target.cycles.seed = spp, seed
-    # Persistent data keeps the sample count and the seed too, unless something is tagged; a full tag
-    # would send all meshes again.
+    # Persistent data keeps the sample count and the seed too, unless something is tagged; a full
+    # tag would send all meshes again.
     target.update_tag(refresh={"TIME"})
     start = time.perf_counter()
     bpy.ops.render.render(write_still=False)
@@ -79,8 +80,8 @@ def main():
         render(target, 1, 0)  # builds the trees and tables, which stay
     load = time.perf_counter() - start
 
-    # Blender gives its floats to files only. They are read when all is rendered: an image that comes
-    # and goes makes the next render send every mesh to Cycles again.
+    # Blender gives its floats to files only. They are read when all is rendered: an image that
+    # comes and goes makes the next render send every mesh to Cycles again.
     seconds = {}
     for spp in arguments.spp:
         seconds[spp] = render(target, spp, arguments.seed * 1000 + spp)

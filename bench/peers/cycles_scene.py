@@ -1,10 +1,10 @@
 """Builds a scene in Blender for Cycles, the way that Cycles renders it best.
 
-Lights: a rectangle is an area light (sampled by solid angle; as an emissive mesh it has ten times the
-variance) in front of a black plate, because lights let rays through. A sphere is a point light with a
-radius (sampled by its cone).
-Spheres: exact ones are the points of a point cloud, one cloud for each material. Glass, which has to be
-hit from inside too, is a fine mesh.
+Lights: a rectangle is an area light (sampled by solid angle; as an emissive mesh it has ten times
+the variance) in front of a black plate, because lights let rays through. A sphere is a point light
+with a radius (sampled by its cone).
+Spheres: exact ones are the points of a point cloud, one cloud for each material. Glass, which has
+to be hit from inside too, is a fine mesh.
 """
 
 import math
@@ -93,7 +93,8 @@ class Translation:
             elif shape.kind == "rectangle":
                 self.add_rectangle(shape.material, shape.to_world)
             else:
-                self.add_mesh(id(shape.mesh), lambda mesh=shape.mesh: mesh, shape.material, shape.to_world)
+                self.add_mesh(id(shape.mesh), lambda mesh=shape.mesh: mesh, shape.material,
+                              shape.to_world)
         for material, group in balls.items():
             self.add_cloud(group, self.material(material))
         if lights:
@@ -224,13 +225,14 @@ class Translation:
         cloud.visible_diffuse = cloud.visible_glossy = cloud.visible_transmission = False
 
     def add_cloud(self, shapes, material, shrink=1.0):
-        """Spheres as a point cloud, which geometry nodes make from the points of a mesh: there is no
-        call that makes one."""
+        """Spheres as a point cloud, which geometry nodes make from the points of a mesh: there is
+        no call that makes one."""
         data = bpy.data.meshes.new("cloud")
         data.vertices.add(len(shapes))
         columns = {"position": ("FLOAT_VECTOR", "vector", [shape.centre for shape in shapes]),
                    "size": ("FLOAT", "value", [shape.radius * shrink for shape in shapes]),
-                   "radiance": ("FLOAT_VECTOR", "vector", [shape.radiance or (0, 0, 0) for shape in shapes])}
+                   "radiance": ("FLOAT_VECTOR", "vector",
+                                [shape.radiance or (0, 0, 0) for shape in shapes])}
         for name, (kind, field, values) in columns.items():
             attribute = (data.attributes.get(name) or data.attributes.new(name, kind, "POINT"))
             attribute.data.foreach_set(field, np.array(values, np.float32).ravel())

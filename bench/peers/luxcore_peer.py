@@ -1,4 +1,5 @@
-"""Renders a scene with LuxCore's CPU path engine. usage: python -m peers.luxcore_peer SCENE PREFIX SPP..."""
+"""Renders a scene with LuxCore's CPU path engine. usage: python -m peers.luxcore_peer SCENE PREFIX
+SPP..."""
 
 import os
 import pathlib
@@ -29,17 +30,19 @@ from peers.scene_file import read_scene  # noqa: E402
 
 
 def configuration(scene, threads, seed):
-    """The same work as the others (depth, filter, nothing clamped or adaptive), and what makes LuxCore
-    best at it: Sobol' points, lights chosen by their power."""
+    """The same work as the others (depth, filter, nothing clamped or adaptive), and what makes
+    LuxCore best at it: Sobol' points, lights chosen by their power."""
     depths = {f"path.pathdepth.{kind}": scene.max_depth
               for kind in ("total", "diffuse", "glossy", "specular")}
     settings = {
         "renderengine.type": "PATHCPU", "renderengine.seed": seed, "native.threads.count": threads,
-        "sampler.type": "SOBOL", "sampler.sobol.adaptive.strength": 0, "lightstrategy.type": "POWER",
+        "sampler.type": "SOBOL", "sampler.sobol.adaptive.strength": 0,
+        "lightstrategy.type": "POWER",
         **depths, "path.russianroulette.depth": scene.rr_depth,
         "path.clamping.variance.maxvalue": 0, "path.hybridbackforward.enable": 0,
-        "film.width": scene.width, "film.height": scene.height, "film.noiseestimation.warmup": 1 << 30,
-        "film.filter.type": "BOX", "film.filter.width": .5, "film.filter.xwidth": .5, "film.filter.ywidth": .5,
+        "film.width": scene.width, "film.height": scene.height,
+        "film.noiseestimation.warmup": 1 << 30, "film.filter.type": "BOX",
+        "film.filter.width": .5, "film.filter.xwidth": .5, "film.filter.ywidth": .5,
         "film.imagepipelines.0.0.type": "NOP",
         "film.outputs.0.type": "RGB", "film.outputs.0.filename": "unused.exr",
     }
@@ -70,7 +73,8 @@ def main():
     pixels = scene.width * scene.height
     for spp in arguments.spp:
         start = time.perf_counter()
-        # The seed of a sample count too is its own: or the fewer samples would be the first of the more.
+        # The seed of a sample count too is its own: or the fewer samples would be the first of the
+        # more.
         properties = configuration(scene, arguments.threads, arguments.seed * 1000 + spp)
         session = pyluxcore.RenderSession(pyluxcore.RenderConfig(properties, translated))
         session.Start()  # builds the trees and the tables of the lights, then lets the threads go
@@ -82,7 +86,8 @@ def main():
         film = session.GetFilm()
         film.GetOutputFloat(pyluxcore.FilmOutputType.RGB, picture, 0, False)
         real = film.GetStats().Get("stats.film.total.samplecount").GetFloat() / pixels
-        protocol.deliver(OUTPUT, arguments.prefix, spp, picture[::-1], seconds, built + begin - start, real)
+        load = built + begin - start
+        protocol.deliver(OUTPUT, arguments.prefix, spp, picture[::-1], seconds, load, real)
     os._exit(0)  # its destructors crash
 
 

@@ -1,9 +1,10 @@
 """Describes a scene to LuxCore, the way that its CPU path engine renders it best.
 
-Spheres: LuxCore has none, so they are fine meshes with exact normals, all instances of one. Of a wall
-that is a huge sphere only the part near the scene is made. A sphere that shines is LuxCore's sphere
-light, which is sampled by solid angle but cannot be hit: a shining mesh just inside shows it to the
-camera, mirrors and glass, and not to diffuse paths, for which the light itself already counts.
+Spheres: LuxCore has none, so they are fine meshes with exact normals, all instances of one. Of a
+wall that is a huge sphere only the part near the scene is made. A sphere that shines is LuxCore's
+sphere light, which is sampled by solid angle but cannot be hit: a shining mesh just inside shows it
+to the camera, mirrors and glass, and not to diffuse paths, for which the light itself already
+counts.
 """
 
 
@@ -44,7 +45,8 @@ def enlarge(picture, factor=4):
     shine but are hardly sampled, are fireflies. Fine texels without interpolation match exactly."""
     height, width = picture.shape[:2]
     x = (np.arange(factor * width) + .5) / factor - .5
-    y = (np.arange(factor * height) + .5) / (factor * height) * (height - 1)  # Mitsuba's reach the poles
+    # Mitsuba's first and last rows are the poles.
+    y = (np.arange(factor * height) + .5) / (factor * height) * (height - 1)
     left, top = np.floor(x).astype(int), np.minimum(y.astype(int), height - 2)
     right, down = (x - left)[None, :, None], (y - top)[:, None, None]
     rows = picture[top] * (1 - down) + picture[top + 1] * down
@@ -114,16 +116,18 @@ class Translation:
     def add_picture(self, name, picture):
         """A linear float picture under a name that stands for a file."""
         height, width = picture.shape[:2]
-        self.scene.DefineImageMap(name, np.ascontiguousarray(picture, np.float32), 1.0, 3, width, height)
+        picture = np.ascontiguousarray(picture, np.float32)
+        self.scene.DefineImageMap(name, picture, 1.0, 3, width, height)
 
     def material(self, wanted: Material, radiance=None, shown=False):
-        """The name of a material. shown: its light is seen but neither sampled nor found by diffuse paths."""
+        """The name of a material. shown: its light is seen but neither sampled nor found by diffuse
+        paths."""
         key = wanted, radiance, shown
         if key in self.materials:
             return self.materials[key]
         name = self.materials[key] = self.new("material")
         prefix = f"materials.{name}."
-        self.put(prefix + "type", {"diffuse": "matte", "mirror": "mirror", "glass": "glass"}[wanted.kind])
+        self.put(prefix + "type", "matte" if wanted.kind == "diffuse" else wanted.kind)
         if wanted.texture:
             from PIL import Image
             picture = np.asarray(Image.open(wanted.texture).convert("RGB")) / 255
@@ -142,7 +146,8 @@ class Translation:
             self.put(prefix + "exteriorior", 1)
         if radiance:
             self.put(prefix + "emission", radiance)
-            self.put(prefix + "emission.directlightsampling.type", "DISABLED" if shown else "ENABLED")
+            self.put(prefix + "emission.directlightsampling.type",
+                     "DISABLED" if shown else "ENABLED")
             for kind in ("diffuse", "glossy") if shown else ():
                 self.put(prefix + f"visibility.indirect.{kind}.enable", "0")
         return name
@@ -153,8 +158,8 @@ class Translation:
             def tuples(array):
                 return None if array is None else list(map(tuple, array.tolist()))
             name = self.new("mesh")
-            self.scene.DefineMesh(name, *map(tuples, (mesh.points, mesh.triangles, mesh.normals, mesh.uvs)),
-                                  None, None)
+            arrays = mesh.points, mesh.triangles, mesh.normals, mesh.uvs
+            self.scene.DefineMesh(name, *map(tuples, arrays), None, None)
             self.meshes[id(mesh)] = name, mesh  # held: an id is only unique while it lives
         return self.meshes[id(mesh)][0]
 
@@ -176,8 +181,8 @@ class Translation:
         radius, small = shape.radius, shape.radius < .02 * self.reach
         if shape.radiance:
             matrix[:3, :3] *= .9999 * radius
-            self.add_object(self.ball(2 if small else 4), self.material(shape.material, shape.radiance, True),
-                            matrix)
+            glow = self.material(shape.material, shape.radiance, shown=True)
+            self.add_object(self.ball(2 if small else 4), glow, matrix)
             prefix = f"lights.{self.new('light')}."
             self.put(prefix + "type", "sphere")
             self.put(prefix + "position", shape.centre)

@@ -1,4 +1,5 @@
-"""Renders a scene with Mitsuba 3. usage: python -m peers.mitsuba_peer VARIANT SCENE PREFIX SPP..."""
+"""Renders a scene with Mitsuba 3. usage: python -m peers.mitsuba_peer VARIANT SCENE PREFIX
+SPP..."""
 
 import sys
 import time
@@ -32,7 +33,8 @@ def main():
     mi.set_log_level(mi.LogLevel.Error)
     dr.set_thread_count(arguments.threads)
     start = time.perf_counter()
-    scene = mi.load_file(str(arguments.scene), **{k: str(v) for k, v in arguments.overrides.items()})
+    overrides = {name: str(value) for name, value in arguments.overrides.items()}
+    scene = mi.load_file(str(arguments.scene), **overrides)
     load = time.perf_counter() - start
 
     width, height = scene.sensors()[0].film().size()

@@ -1,9 +1,9 @@
 """How the benchmark talks to a peer: the command line, and one JSON line for each render.
 
-A line has `spp` (asked for) and `real_spp` (in the picture), `seconds` (wall time of rendering, without
-reading the scene and building its trees), `load` (seconds until rendering could begin), `peak_mib` (the
-peak of the process's resident memory so far) and `picture`: an .npy file, float32 (height, width, 3),
-linear, first row on top.
+A line has `spp` (asked for) and `real_spp` (in the picture), `seconds` (wall time of rendering,
+without reading the scene and building its trees), `load` (seconds until rendering could begin),
+`peak_mib` (the peak of the process's resident memory so far) and `picture`: an .npy file, float32
+(height, width, 3), linear, first row on top.
 """
 
 import argparse
@@ -14,8 +14,8 @@ import numpy as np
 
 
 def arguments(description):
-    """What to render: .scene, .prefix of the pictures, .spp (a list), .seed, .threads, and .overrides
-    for the scene's defaults (width, height, max_depth, rr_depth)."""
+    """What to render: .scene, .prefix of the pictures, .spp (a list), .seed, .threads, and
+    .overrides for the scene's defaults (width, height, max_depth, rr_depth)."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("prefix")

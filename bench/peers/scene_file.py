@@ -1,8 +1,8 @@
 """Reads the Mitsuba XML of the benchmark's scenes for the peers that cannot.
 
-Only what bench/make_scenes.py writes: defaults, references, a perspective camera, rectangles, spheres
-and binary PLY meshes of triangles, diffuse (also with a bitmap), mirror and glass, area lights, an even
-sky or an environment map. Anything else is a ValueError, never left out.
+Only what bench/make_scenes.py writes: defaults, references, a perspective camera, rectangles,
+spheres and binary PLY meshes of triangles, diffuse (also with a bitmap), mirror and glass, area
+lights, an even sky or an environment map. Anything else is a ValueError, never left out.
 """
 
 import dataclasses
@@ -19,7 +19,8 @@ Colour = tuple[float, float, float]
 
 @dataclasses.dataclass(frozen=True)
 class Material:
-    """kind: "diffuse" (a colour or a texture file in sRGB), "mirror", "glass" (ior: inside/outside)."""
+    """kind: "diffuse" (a colour or a texture file in sRGB), "mirror", "glass" (ior:
+    inside/outside)."""
     kind: str = "diffuse"
     colour: Colour = (.5, .5, .5)
     texture: str | None = None
@@ -28,8 +29,9 @@ class Material:
 
 @dataclasses.dataclass
 class Shape:
-    """kind: "sphere" (centre, radius), "rectangle" (the square from -1 to 1 in x and y, facing +z, under
-    to_world) or "mesh" (mesh under to_world). radiance: what it emits on its outside, or None."""
+    """kind: "sphere" (centre, radius), "rectangle" (the square from -1 to 1 in x and y, facing +z,
+    under to_world) or "mesh" (mesh under to_world). radiance: what it emits on its outside, or
+    None."""
     kind: str
     material: Material
     radiance: Colour | None = None
@@ -85,7 +87,8 @@ def read_radiance(path):
     end = data.index(b"\n", start) + 1
     height, width = (int(word) for word in data[start:end].split()[1::2])
     pieces = -(-width // 128)
-    rows = np.frombuffer(data, np.uint8, height * (4 + 4 * (width + pieces)), end).reshape(height, -1)
+    length = 4 + 4 * (width + pieces)
+    rows = np.frombuffer(data, np.uint8, height * length, end).reshape(height, length)
     lengths = np.arange(pieces) * 129  # each run of literal bytes begins with its length
     bytes_ = np.delete(rows[:, 4:].reshape(height, 4, -1), lengths, axis=2).astype(float)
     scale = np.where(bytes_[:, 3] > 0, 2.0 ** (bytes_[:, 3] - 136), 0)
@@ -142,7 +145,8 @@ class _Reader:
         return matrix
 
     def material(self, shape):
-        """The BSDF inside a shape, or the one that it refers to; Mitsuba's default where there is none."""
+        """The BSDF inside a shape, or the one that it refers to; Mitsuba's default where there is
+        none."""
         reference = shape.find("ref")
         bsdf = shape.find("bsdf") if reference is None else self.named[reference.get("id")]
         if bsdf is None:
@@ -157,7 +161,8 @@ class _Reader:
         elif kind == "conductor" and self.text(self.child(bsdf, "material")) == "none":
             return Material("mirror")
         elif kind == "dielectric":
-            return Material("glass", ior=self.number(bsdf, "int_ior") / self.number(bsdf, "ext_ior"))
+            inside, outside = (self.number(bsdf, name) for name in ("int_ior", "ext_ior"))
+            return Material("glass", ior=inside / outside)
         raise ValueError(f"bsdf {kind}")
 
     def shape(self, element):
@@ -173,9 +178,9 @@ class _Reader:
         elif kind == "rectangle":
             shape.to_world = self.transform(element.find("transform"))
         elif kind == "ply":
-            flat = self.child(element, "face_normals")
-            shape.kind = "mesh"
-            shape.mesh = read_ply(self.file(element), flat is not None and self.text(flat) == "true")
+            flag = self.child(element, "face_normals")
+            flat = flag is not None and self.text(flag) == "true"
+            shape.kind, shape.mesh = "mesh", read_ply(self.file(element), flat)
             shape.to_world = self.transform(element.find("transform"))
         else:
             raise ValueError(f"shape {kind}")

@@ -40,7 +40,8 @@ class Curves(unittest.TestCase):
             self.assertTrue(found.extrapolated)
 
     def test_time_to_follows_the_piece_between_two_points(self):
-        # Slope -2, then -1: between 1 and 10 seconds a tenth of the error takes sqrt(10) times as long.
+        # Slope -2, then -1: between 1 and 10 seconds a tenth of the error takes sqrt(10) times as
+        # long.
         found = curves.time_to(.1, [(1, 1), (10, .01), (100, .001)])
         self.assertAlmostEqual(found.seconds, 10 ** .5)
 
