@@ -55,6 +55,9 @@ def parse():
     parser.add_argument("--max-depth", type=int, default=10, help="longest path in segments (10)")
     parser.add_argument("--rr-depth", type=int, default=1000000,
                         help="depth from which roulette ends paths, for everyone (never)")
+    parser.add_argument("--mitsuba-sampler", default="multijitter", metavar="NAME",
+                        choices=["multijitter", "independent", "orthogonal", "stratified"],
+                        help="(multijitter), its best; independent, orthogonal, stratified")
     parser.add_argument("--cores", type=int, default=available_cores(),
                         help="for each renderer (all)")
     parser.add_argument("--timeout", type=float, default=1800,
@@ -121,7 +124,7 @@ def main():
     scenes = prepare_scenes(arguments.only)
     settings = Settings(*arguments.resolution, arguments.max_depth, arguments.rr_depth,
                         arguments.cores, arguments.timeout)
-    renderers = installed(arguments.renderers)
+    renderers = installed(arguments.renderers, arguments.mitsuba_sampler)
     session = Session(folder, scenes, renderers, settings)
     seeds = range(1, arguments.seeds + 1)
 

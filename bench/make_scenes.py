@@ -4,8 +4,8 @@
 usage: make_scenes.py FOLDER [SCENE...]      all scenes, or those named; needs numpy
 
 Every scene has the defaults width, height, max_depth and rr_depth (10 segments and no roulette
-where nobody says otherwise), a box filter, and nothing that one of the renderers cannot do. The
-same files come out of every run.
+where nobody says otherwise) and sampler (for Mitsuba), a box filter, and nothing that one of the
+renderers cannot do. The same files come out of every run.
 """
 
 import math
@@ -20,7 +20,8 @@ import numpy as np
 import meshes
 from programs import BENCH, BUILD, BUNNY, ROOT, run
 
-SIZE = {"width": "320", "height": "240", "max_depth": "10", "rr_depth": "1000000"}
+DEFAULTS = {"width": "320", "height": "240", "max_depth": "10", "rr_depth": "1000000",
+            "sampler": "independent"}
 
 
 # --- pieces of XML ----------------------------------------------
@@ -100,7 +101,7 @@ def box(half_width, height, near, far):
 def write_scene(folder, name, origin, target, fov, parts):
     """One scene file; fov is horizontal, in degrees."""
     defaults = "\n".join(f'    <default name="{key}" value="{value}"/>'
-                         for key, value in SIZE.items())
+                         for key, value in DEFAULTS.items())
     body = "\n".join("    " + part for part in parts)
     (folder / f"{name}.xml").write_text(f"""<scene version="3.0.0">
 {defaults}
@@ -119,7 +120,7 @@ def write_scene(folder, name, origin, target, fov, parts):
             <integer name="height" value="$height"/>
             <rfilter type="box"/>
         </film>
-        <sampler type="independent"/>
+        <sampler type="$sampler"/>
     </sensor>
 {body}
 </scene>
@@ -172,7 +173,10 @@ def make_room(folder):
     picture left to right, which takes no time and which not every renderer can: left out."""
     root = ET.parse(ROOT / "scenes" / "spheres.xml").getroot()
     for default in root.findall("default"):
-        default.set("value", SIZE.get(default.get("name"), default.get("value")))
+        default.set("value", DEFAULTS.get(default.get("name"), default.get("value")))
+    sampler = root.find("sensor/sampler")
+    root.insert(0, ET.Element("default", name="sampler", value=sampler.get("type")))
+    sampler.set("type", "$sampler")
     camera = root.find("sensor/transform")
     camera.remove(camera.find("scale"))
     ET.ElementTree(root).write(folder / "room.xml")

@@ -74,9 +74,9 @@ class Clrender:
 class Peer:
     """A renderer from a Python package, run by a module of bench/peers."""
 
-    def __init__(self, name, label, package, module, *words):
+    def __init__(self, name, label, package, module):
         self.name, self.label, self.package = name, label, package
-        self.module, self.words = module, words
+        self.module, self.words = module, ()
 
     def version(self):
         try:
@@ -108,14 +108,28 @@ class Peer:
         return launch(command, settings.timeout, environment)[1]
 
 
-class MitsubaLlvm(Peer):
-    """Needs an LLVM that Mitsuba 3.9 gets on with: 14 and 15 make it abort."""
+class Mitsuba(Peer):
+    """sampler: see docs/benchmark.md. llvm mode needs an LLVM that Mitsuba 3.9 gets on with: 14 and
+    15 make it abort."""
+
+    def __init__(self, name, label, variant, sampler="multijitter"):
+        super().__init__(name, label, "mitsuba", "mitsuba_peer")
+        self.variant = variant
+        self.use_sampler(sampler)
+
+    def use_sampler(self, sampler):
+        self.sampler, self.words = sampler, (self.variant, sampler)
+
+    def lacks_llvm(self):
+        return self.variant.startswith("llvm") and not find_llvm()
 
     def version(self):
-        return super().version() if find_llvm() else None
+        version = super().version()
+        return f"{version} {self.sampler}" if version and not self.lacks_llvm() else None
 
     def missing(self):
-        return super().missing() if find_llvm() else "there is no LLVM 16 or newer (apt: libllvm19)"
+        return ("there is no LLVM 16 or newer (apt: libllvm19)" if self.lacks_llvm()
+                else super().missing())
 
 
 def find_llvm():
@@ -133,18 +147,20 @@ def find_llvm():
 
 RENDERERS = [
     Clrender(),
-    MitsubaLlvm("mitsuba-llvm", "Mitsuba llvm", "mitsuba", "mitsuba_peer", "llvm_ad_rgb"),
-    Peer("mitsuba-scalar", "Mitsuba scalar", "mitsuba", "mitsuba_peer", "scalar_rgb"),
+    Mitsuba("mitsuba-llvm", "Mitsuba llvm", "llvm_ad_rgb"),
+    Mitsuba("mitsuba-scalar", "Mitsuba scalar", "scalar_rgb"),
     Peer("luxcore", "LuxCore", "pyluxcore", "luxcore_peer"),
     Peer("cycles", "Cycles", "bpy", "cycles_peer"),
 ]
 LABELS = {renderer.name: renderer.label for renderer in RENDERERS}
 
 
-def installed(names):
+def installed(names, mitsuba_sampler):
     """Those of the named renderers that are there; says which are not, and why."""
     there = []
     for renderer in RENDERERS:
+        if isinstance(renderer, Mitsuba):
+            renderer.use_sampler(mitsuba_sampler)
         if renderer.name in names:
             if renderer.version():
                 there.append(renderer)

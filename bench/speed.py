@@ -89,8 +89,8 @@ def mesh(arguments):
     scene, pixels, spp = WORK / "mesh.xml", 320 * 240, 64
 
     def mitsuba():
-        lines = run([python, "-m", "peers.mitsuba_peer", "llvm_ad_rgb", scene, WORK / "mitsuba",
-                     spp, "--threads", available_cores()], cwd=BENCH).splitlines()
+        lines = run([python, "-m", "peers.mitsuba_peer", "llvm_ad_rgb", "independent", scene,
+                     WORK / "mitsuba", spp, "--threads", available_cores()], cwd=BENCH).splitlines()
         return pixels * spp / json.loads(lines[-1])["seconds"] * 1e-6
 
     def clrender():
