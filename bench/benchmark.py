@@ -21,7 +21,7 @@ from session import Session
 FOLDER = BUILD / "bench"
 QUICK = {"renderers": ["clrender", "mitsuba-llvm"], "spp": [16, 64], "seeds": 3, "starts": 1}
 FULL = {"renderers": list(LABELS), "spp": [4, 16, 64, 256], "seeds": 4, "starts": 2}
-QUICK_SECONDS = 240  # for the rounds; scenes, start-up and tables take the rest of five minutes
+QUICK_SECONDS = 255  # for the rounds; scenes, start-up and tables take the rest of five minutes
 
 
 def words(text):

@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import patheffects  # noqa: E402
-from matplotlib.ticker import LogFormatterMathtext, NullFormatter  # noqa: E402
+from matplotlib.ticker import LogFormatterMathtext, LogFormatterSciNotation  # noqa: E402
 
 from catalogue import TITLES  # noqa: E402
 
@@ -57,13 +57,14 @@ def label_ends(axes, summary, size):
 
 
 def label_guide(axes, size):
-    """Says what the guides are, on the lowest one that is long enough."""
+    """Says what the guides are, on the highest one that is long enough: there are no lines."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    for power in range(math.floor(math.log10(low * left)), math.ceil(math.log10(high * right))):
+    lowest, highest = math.floor(math.log10(low * left)), math.ceil(math.log10(high * right))
+    for power in range(highest, lowest, -1):
         # The part of the guide inside of the axes, from one edge to another.
         start, end = max(left, 10.0 ** power / high), min(right, 10.0 ** power / low)
-        if end > start * (right / left) ** .4:
-            place = start ** .3 * end ** .7  # clear of the picture in the corner
+        if end > start * (right / left) ** .3:
+            place = (start * end) ** .5
             ends = [(seconds, 10.0 ** power / seconds) for seconds in (start, end)]
             dx, dy = np.diff(axes.transData.transform(ends), axis=0)[0]
             axes.text(place, 10.0 ** power / place, "equal efficiency", size=.75 * size,
@@ -94,16 +95,16 @@ def draw(axes, summary, size=10):
     for side in ("left", "bottom"):
         axes.spines[side].set_color(FAINT)
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_minor_formatter(NullFormatter())
+        axis.set_minor_formatter(LogFormatterSciNotation())  # only where decades are few
         axis.set_major_formatter(LogFormatterMathtext())
     axes.tick_params(which="both", colors=INK, labelsize=.9 * size)
-    axes.tick_params(which="minor", color=FAINT, length=2)
+    axes.tick_params(which="minor", color=FAINT, length=2, labelsize=.75 * size)
     axes.set_title(TITLES[summary.name], loc="left", size=1.2 * size, color=INK, pad=size)
 
 
 def add_picture(axes, summary):
     """The scene itself, small, in the corner where the lines are not."""
-    inset = axes.inset_axes([.02, .03, .3, .3])
+    inset = axes.inset_axes([.02, .03, .27, .27])
     entry = summary.entries[0]
     inset.imshow(display(entry.stack.mean(0)), interpolation="lanczos")
     inset.set_axis_off()
@@ -114,7 +115,7 @@ def annotate_samples(axes, summary, size):
     first = summary.entries[0]
     for i, place in enumerate(first.line()):
         axes.annotate(f"{first.points[i].spp}{'' if i else ' spp'}", place, color=INK,
-                      xytext=(-.75 * size, -.3 * size), textcoords="offset points", ha="right",
+                      xytext=(-.75 * size, -.05 * size), textcoords="offset points", ha="right",
                       va="center", size=.8 * size)
 
 

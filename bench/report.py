@@ -82,9 +82,12 @@ def bias(summaries):
         away = curves.relative_difference([entry.mean for entry in summary.entries])
         cells = {entry.name: f"{100 * value:+.2f}%" for entry, value in zip(summary.entries, away)}
         agreement = next((entry.agreement for entry in summary.entries if entry.agreement), None)
-        ours = ["–"] * 3 if not agreement else [
-            f"{100 * agreement.difference:+.2f}%", f"{agreement.z_mean:+.1f}",
-            f"{agreement.z_blocks:.2f} ({figure(agreement.z_expected)})"]
+        ours = ["–"] * 3
+        if agreement:
+            ours[0] = f"{100 * agreement.difference:+.2f}%"
+        if agreement and math.isfinite(agreement.z_expected):
+            ours[1:] = (f"{agreement.z_mean:+.1f}",
+                        f"{agreement.z_blocks:.2f} ({agreement.z_expected:.2f})")
         rows.append([summary.name, *[cells.get(name, "–") for name in labels], *ours])
     return markdown(["scene", *labels.values(), "clrender - Mitsuba", "z of the mean",
                      "z of blocks (unbiased)"], rows)
