@@ -14,6 +14,8 @@ run_packages=(pocl-opencl-icd)
 test_packages=(catch2 clang-14 clang-format-14 clang-tidy-14 oclgrind python3)
 # To test it on Intel's runtime, which comes from PyPI.
 intel_packages=(python3-venv)
+# To measure it beside the renderers that PyPI has; Mitsuba compiles with LLVM.
+peer_packages=(python3-venv libllvm19)
 
 # missing_packages NAME...: prints those that are not installed.
 missing_packages() {

@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""Run time against error: clrender and other renderers on the same scenes, taking turns in one run.
+
+Writes into build/bench/results: runs.csv and starts.csv (a row as soon as it is measured; what is
+already there is not measured again), table.md, a plot for each scene and overview.png.
+docs/benchmark.md says what is measured and how. Wants an idle machine.
+"""
+
+import argparse
+import importlib.util
+import os
+import shutil
+import sys
+import time
+
+from catalogue import TITLES
+from programs import BUILD, available_cores, use_cores
+from renderers import LABELS, Settings, find_llvm, installed
+from session import Session
+
+FOLDER = BUILD / "bench"
+QUICK = {"renderers": ["clrender", "mitsuba-llvm"], "spp": [16, 64], "seeds": 3, "starts": 1}
+FULL = {"renderers": list(LABELS), "spp": [4, 16, 64, 256], "seeds": 4, "starts": 2}
+QUICK_SECONDS = 255  # for the rounds; scenes, start-up and tables take the rest of five minutes
+
+
+def words(text):
+    return [word for word in text.split(",") if word]
+
+
+def counts(text):
+    return sorted({int(word) for word in words(text)})
+
+
+def size(text):
+    width, height = (int(word) for word in text.split("x"))
+    return width, height
+
+
+def parse():
+    parser = argparse.ArgumentParser(prog="scripts/bench", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true",
+                        help="at most five minutes: clrender and Mitsuba llvm, fewer seeds and "
+                             "samples, always anew, into build/bench/quick")
+    parser.add_argument("--only", type=words, default=list(TITLES), metavar="SCENE,...",
+                        help="these scenes: " + " ".join(TITLES))
+    parser.add_argument("--renderers", type=words, metavar="NAME,...",
+                        help="these renderers: " + " ".join(LABELS))
+    parser.add_argument("--spp", type=counts, metavar="N,...", help="sample counts (4,16,64,256)")
+    parser.add_argument("--seeds", type=int, help="independent runs of each, at least 2 (4)")
+    parser.add_argument("--starts", type=int, help="warm and cold starts of each (2)")
+    parser.add_argument("--resolution", type=size, default=(320, 240), metavar="WxH",
+                        help="(320x240)")
+    parser.add_argument("--max-depth", type=int, default=10, help="longest path in segments (10)")
+    parser.add_argument("--rr-depth", type=int, default=1000000,
+                        help="depth from which roulette ends paths, for everyone (never)")
+    parser.add_argument("--mitsuba-sampler", default="multijitter", metavar="NAME",
+                        choices=["multijitter", "independent", "orthogonal", "stratified"],
+                        help="(multijitter), its best; independent, orthogonal, stratified")
+    parser.add_argument("--cores", type=int, default=available_cores(),
+                        help="for each renderer (all)")
+    parser.add_argument("--timeout", type=float, default=1800,
+                        help="seconds for one process (1800)")
+    parser.add_argument("--fresh", action="store_true",
+                        help="forgets what has been measured before")
+    parser.add_argument("--report", action="store_true",
+                        help="measures nothing: tables and plots only")
+    arguments = parser.parse_args()
+
+    usual = QUICK if arguments.quick else FULL
+    for name, value in usual.items():
+        if getattr(arguments, name) is None:
+            setattr(arguments, name, value)
+    for name, known in (("only", TITLES), ("renderers", LABELS)):
+        for word in getattr(arguments, name):
+            if word not in known:
+                parser.error(f"--{name}: there is no {word}; known: {' '.join(known)}")
+    if arguments.seeds < 2:
+        parser.error("--seeds: the error is the variance between at least 2")
+    return arguments
+
+
+def need_numpy():
+    if importlib.util.find_spec("numpy") is None:
+        sys.exit("error: this Python has no numpy. scripts/bench --install-peers makes one that "
+                 "has, and the peers; or CLRENDER_PEER_PYTHON names one")
+
+
+def prepare_scenes(names):
+    """The scene files, made anew, with the same content every time."""
+    import make_scenes
+    folder = FOLDER / "scenes"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        make_scenes.SCENES[name](folder)
+    return [folder / f"{name}.xml" for name in names]
+
+
+def conclude(session, seeds, spps, folder):
+    """Prints the tables and writes them, and the plots."""
+    import report
+    import summary
+    summaries = summary.summarise(session, seeds, spps)
+    print("\n" + report.write_report(session, summaries, seeds, folder / "table.md"))
+    if importlib.util.find_spec("matplotlib") is None:
+        print("plots: left out, this Python has no matplotlib")
+        return
+    import plots
+    plots.plot(summaries, folder)
+
+
+def main():
+    started = time.monotonic()
+    arguments = parse()
+    need_numpy()
+    use_cores(arguments.cores)
+    if find_llvm():
+        os.environ["DRJIT_LIBLLVM_PATH"] = find_llvm()
+
+    folder = FOLDER / ("quick" if arguments.quick else "results")
+    if arguments.fresh or (arguments.quick and not arguments.report):
+        shutil.rmtree(folder, ignore_errors=True)
+    scenes = prepare_scenes(arguments.only)
+    settings = Settings(*arguments.resolution, arguments.max_depth, arguments.rr_depth,
+                        arguments.cores, arguments.timeout)
+    renderers = installed(arguments.renderers, arguments.mitsuba_sampler)
+    session = Session(folder, scenes, renderers, settings)
+    seeds = range(1, arguments.seeds + 1)
+
+    if not arguments.report:
+        session.render(seeds, arguments.spp, started + QUICK_SECONDS if arguments.quick else None)
+        session.start_up(arguments.starts, scenes[:1] if arguments.quick else scenes)
+
+    conclude(session, seeds, arguments.spp, folder)
+    took = time.monotonic() - started
+    print(f"Written to {folder.relative_to(BUILD.parent)}, after {took:.0f} s")
+    return 1 if session.failures else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit("\nStopped. The same command goes on from here.")
