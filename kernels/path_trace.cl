@@ -18,14 +18,6 @@
 #include "shared/launch_data.h"
 #include "surface.clh"
 
-/* Numbers that a bounce uses: pairs, and one alone. The choice of a light and that of a lobe are a
-   pair, which costs less than two numbers apart. */
-#define BOUNCE_CHOICES 0u
-#define BOUNCE_LIGHT 2u
-#define BOUNCE_BSDF 4u
-#define BOUNCE_ROULETTE 6u
-#define BOUNCE_DIMENSIONS 7u
-
 /* Bounces whose numbers are spread evenly over the samples of a pixel. */
 #define ORDERED_BOUNCES 2
 
@@ -34,9 +26,9 @@
 #define REFILL_LANES ((LANES + 1) / 2)
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
-   of the last direction, where the last vertex was not specular, and `prev_n` the normal there;
-   `eta2` undoes the compression of radiance in roulette; `radiance` is what the sample has
-   gathered. */
+   of the last direction, infinite where the last vertex was specular or the camera, and `prev_n`
+   the normal there; `eta2` undoes the compression of radiance in roulette; `radiance` is what the
+   sample has gathered. */
 typedef struct {
     mask_l alive;
     vec3 o, d;
@@ -45,7 +37,6 @@ typedef struct {
     vec3 throughput, radiance;
     real alpha;
     real prev_pdf;
-    mask_l prev_specular;
     vec3 prev_n;
     real eta2;
     int_l depth;
@@ -54,7 +45,7 @@ typedef struct {
     mask_l pending;
     real weight; /* the camera ray's */
     real dx, dy;
-    uint_l rays;
+    uint rays; /* of all lanes together */
 } Paths;
 
 /* A tile, cut off where the picture ends, and what is left to do of its current block. */
@@ -138,7 +129,7 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
 #if HAS_ALPHA
     p->alpha = pick(fresh, ray.weight * f->env_alpha, p->alpha);
 #endif
-    p->prev_specular |= fresh;
+    p->prev_pdf = pick(fresh, real_of(INFINITY), p->prev_pdf);
     p->eta2 = pick(fresh, real_of(1.0f), p->eta2);
     p->depth = ipick(fresh, int_of(0), p->depth);
     p->sampler = sampler_pick(fresh, sampler, p->sampler);
@@ -210,9 +201,9 @@ CLR_INLINE void paths_add_radiance(Paths *p, vec3 radiance, real weight, mask_l 
 /* Weight of light that BSDF sampling has found, when light sampling has density `pdf` there. */
 CLR_INLINE real weight_of_chance(const Paths *p, real pdf) {
 #if STRATEGY == 0
-    return pick(p->prev_specular, real_of(1.0f), mis_weight(p->prev_pdf, pdf));
+    return mis_weight(p->prev_pdf, pdf);
 #elif STRATEGY == 1
-    return pick(p->prev_specular, real_of(1.0f), real_of(0.0f));
+    return pick(lt(p->prev_pdf, real_of(INFINITY)), real_of(0.0f), real_of(1.0f));
 #else
     return real_of(1.0f);
 #endif
@@ -254,23 +245,28 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 #endif
 
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
-/* Direct light at diffuse surfaces: one sampled light each, behind a shadow ray. */
+/* Direct light at diffuse surfaces: one sampled light each, behind a shadow ray. In lanes of
+   `final` the path ends here, and no ray follows that could find a light by chance. */
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                 vec3 albedo, int_l prim, real choice, mask_l ordered,
+                                 vec3 albedo, int_l prim, BounceNumbers numbers, mask_l final,
                                  mask_l diffuse) {
     vec3 o = ray_origin(surface, n);
-    LightSample light =
-        light_sample(scene, o, n, choice, p->sampler, BOUNCE_LIGHT, ordered, diffuse);
+    LightSample light = light_sample(scene, o, n, numbers, p->sampler, diffuse);
     real cosine = v3_dot(n, light.wi);
     mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
     if (!any_lane(wanted))
         return;
-    p->rays -= as_uint_l(wanted);
+    p->rays += (uint)count_lanes(wanted);
     mask_l lit =
         wanted & ~scene_occluded(scene, o, light.wi, prim, light.prim, light.t_max, wanted);
     real bsdf_pdf = cosine * CLR_INV_PI;
 #if STRATEGY == 0
     real weight = bsdf_pdf * mis_weight_over_pdf(light.inv_pdf, bsdf_pdf);
+#if FINAL_BY_LIGHTS
+    weight = pick(final, bsdf_pdf * light.inv_pdf, weight);
+#else
+    (void) final;
+#endif
 #if HAS_POINT_LIGHTS
     weight = pick(light.delta, bsdf_pdf * light.inv_pdf, weight);
 #endif
@@ -305,7 +301,7 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
 /* From one vertex to the next. */
 CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     __global const FrameData *f = scene->frame;
-    p->rays -= as_uint_l(p->alive);
+    p->rays += (uint)count_lanes(p->alive);
     Hit hit = scene_closest(scene, p->o, p->d, p->self, CLIP_END(p), p->alive);
     mask_l met = p->alive & ige(hit.prim, int_of(0));
 #if HAS_CLIP || INTEGRATOR == 1
@@ -366,17 +362,25 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
     cosine = fabs(cosine);
 
-    real u_light, u_lobe, u1, u2;
-    mask_l ordered = ilt(p->depth, int_of(ORDERED_BOUNCES));
-    sampler_get_pair(p->sampler, BOUNCE_CHOICES, ordered, &u_light, &u_lobe);
+    BounceNumbers numbers =
+        sampler_bounce(p->sampler, going & ilt(p->depth, int_of(ORDERED_BOUNCES)));
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
+    mask_l final = no_lanes();
+#if FINAL_BY_LIGHTS
+    final = diffuse & ige(p->depth, int_of(f->max_depth - 2));
+#endif
     if (any_lane(diffuse))
-        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, u_light, ordered, diffuse);
+        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, numbers, final, diffuse);
+#if FINAL_BY_LIGHTS
+    p->alive &= ~final;
+    if (!any_lane(p->alive))
+        return;
+#endif
 #endif
 
-    sampler_get_pair(p->sampler, BOUNCE_BSDF, ordered, &u1, &u2);
-    BsdfSample sample = bsdf_sample(bsdf, p->d, n, cosine, back, u_lobe, u1, u2);
+    BsdfSample sample =
+        bsdf_sample(bsdf, p->d, n, cosine, back, numbers.lobe, numbers.bsdf_u, numbers.bsdf_v);
     /* Lanes that have ended may go on computing nonsense: nothing of it is looked at. */
 #if HIDE_EMITTERS && HAS_AREA_EMITTERS
     mask_l moved = ~through;
@@ -388,7 +392,6 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     p->d = v3_pick(moved, renormalize(sample.wo), p->d);
     p->self = ipick(moved, hit.prim, p->self);
     p->prev_pdf = pick(moved, sample.pdf, p->prev_pdf);
-    p->prev_specular = ipick(moved, sample.specular, p->prev_specular);
 #if LIGHT_COUNT == -1
     p->prev_n = v3_pick(moved, n, p->prev_n);
 #endif
@@ -407,9 +410,9 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
 CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block, uint *rays,
                              ItemCounters *counters) {
     Paths p;
-    p.alive = p.pending = p.prev_specular = no_lanes();
-    p.rays = as_uint_l(no_lanes());
-    p.sampler = sampler_init(0u, p.rays, p.rays);
+    p.alive = p.pending = no_lanes();
+    p.rays = 0u;
+    p.sampler = sampler_init(0u, as_uint_l(p.alive), as_uint_l(p.alive));
     p.pixel = p.depth = int_of(0);
     p.self = int_of(-1);
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
@@ -426,10 +429,7 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
         }
         paths_step(scene, &p);
     }
-    uint counts[LANES];
-    store_uint(p.rays, counts);
-    for (int i = 0; i < LANES; ++i)
-        *rays += counts[i];
+    *rays += p.rays;
 }
 
 /* The tile that item `index` of a colour renders. */

@@ -84,6 +84,15 @@ void flatten_integrator(Flattening &work) {
         else if (integrator.emitter_samples == 0)
             flat.config.STRATEGY = 2;
     }
+    // The last ray of a path would only bring what multiple importance sampling expects of it:
+    // light. After some bounces all of it may as well come from light sampling, if that finds every
+    // light.
+    constexpr int long_path = 5;
+    flat.config.FINAL_BY_LIGHTS = flat.config.STRATEGY == 0 && f.max_depth >= long_path &&
+                                          f.max_depth < INT_MAX && flat.config.ENVIRONMENT != 1 &&
+                                          !work.light_by_chance
+                                      ? 1
+                                      : 0;
     flat.config.INTEGRATOR = integrator.kind == IntegratorKind::depth ? 1 : 0;
     flat.config.HAS_ROULETTE =
         integrator.kind != IntegratorKind::depth && f.rr_depth < f.max_depth ? 1 : 0;

@@ -178,8 +178,12 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         std::copy_n(sphere.center, 3, info.center);
         light.area = info.radius = sphere.radius;
         // A sphere that shines inwards is met by chance only: nothing outside sees it.
-        if (!(sphere.radius > 0) || !(radiance > 0))
+        if (!(radiance > 0))
             return;
+        if (!(sphere.radius > 0)) {
+            work.light_by_chance = true;
+            return;
+        }
         info.density = 1;
         const glm::dvec3 center(sphere.center[0], sphere.center[1], sphere.center[2]);
         const double radius = sphere.radius;

@@ -22,6 +22,7 @@ struct Flattening {
     std::map<int, std::size_t> first_triangle_of_shape{}; ///< by Scene::shapes, meshes
     std::vector<TriangleCorners> corners{};
     std::size_t vertex_count = 0;
+    bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
 };
 
 /// Where the scene is put, so that what the camera is near to lies within a unit of the origin.

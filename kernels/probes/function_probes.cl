@@ -70,7 +70,7 @@ __kernel void probe_sampler_pair(__global float *out, uint pixel, uint offset, u
     }
     Sampler sampler = sampler_init(1u, load_uint(pixels), load_uint(sample));
     real u, v;
-    sampler_get_pair(sampler, dimension, all_lanes(), &u, &v);
+    sampler_get_pair(sampler, dimension, &u, &v);
     store_real(u, us);
     store_real(v, vs);
     for (uint i = 0; i < LANES && first + i < count; ++i) {
