@@ -1,168 +1,147 @@
-/// How fast the tree is walked: million rays a second for the rays of a camera, for diffuse bounces
-/// off what the camera sees, and for shadow rays from there to a point.
+/// How fast the tree is walked, and how fast and large it is built, beside Embree on the same
+/// triangles, rays and threads.
 ///
-///     bench_traversal MODEL.obj [KERNEL_DIR...]
+///     bench_traversal [--threads N] [--rounds N] [--size PIXELS] [--kernels DIR]... [MESH...]
 ///
-/// Without a KERNEL_DIR the embedded kernels run. Several folders are measured in turns, round
-/// after round, so that a ratio between two of them does not depend on what else the machine does.
+/// MESH is an OBJ file or SHAPE:COUNT, a shape of scenes/generator. Without one: the shared meshes
+/// of 6 and 70 thousand triangles where there are any (else generated ones), 1 and 10 million.
+/// Every column is measured in turns, round after round, after one round that does not count.
+/// Rates are million rays a CPU second of one thread, medians of the rounds; ratios are medians of
+/// each round's ratio. CPU time, because a machine is seldom idle. Each DIR adds a column with the
+/// kernels in that folder, for one who changes them: they have to read the same tree.
 
 #include "cl_test_device.h"
 #include "flatten/bvh_builder.h"
-#include "shared/bvh_probe.h"
+#include "traversal_rays.h"
+
+#ifdef CLRENDER_BENCH_EMBREE
+#include "embree_scene.h"
+#endif
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <glm/geometric.hpp>
-#include <random>
+#include <malloc.h>
+#include <memory>
 #include <sstream>
-#include <tbb/parallel_for.h>
-#ifdef CLRENDER_BENCH_EMBREE
-#include <embree3/rtcore.h>
-#endif
+#include <tbb/global_control.h>
+#include <thread>
 
 using namespace clrender;
+using namespace clrender::bench;
 
 namespace {
 
-using Triangles = std::vector<std::array<glm::vec3, 3>>;
-using Rays = std::vector<BvhProbeRay>;
-using Hits = std::vector<BvhProbeHit>;
-
-constexpr int kImageSize = 1024;
-constexpr int kRounds = 7;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Positions and faces of an OBJ file; polygons become fans.
-Triangles read_obj(const std::string &path) {
-    std::ifstream file(path);
-    if (!file) {
-        throw std::runtime_error("cannot read " + path);
-    }
-    std::vector<glm::vec3> vertices;
-    Triangles triangles;
-    for (std::string line; std::getline(file, line);) {
-        std::istringstream words(line);
-        std::string word;
-        words >> word;
-        if (word == "v") {
-            glm::vec3 &v = vertices.emplace_back();
-            words >> v.x >> v.y >> v.z;
-        } else if (word == "f") {
-            std::vector<glm::vec3> corners;
-            while (words >> word) {
-                const long index = std::stol(word);
-                const long count = long(vertices.size());
-                corners.push_back(vertices.at(std::size_t(index > 0 ? index - 1 : count + index)));
-            }
-            for (std::size_t i = 2; i < corners.size(); ++i) {
-                triangles.push_back({corners[0], corners[i - 1], corners[i]});
-            }
-        }
-    }
-    return triangles;
-}
-
-/// Moves and scales the model into the unit cube, as the renderer does.
-void normalize(Triangles &triangles) {
-    glm::vec3 lower(1e30f), upper(-1e30f);
-    for (const auto &t : triangles) {
-        for (const glm::vec3 &v : t) {
-            lower = glm::min(lower, v);
-            upper = glm::max(upper, v);
-        }
-    }
-    const glm::vec3 middle = 0.5f * (lower + upper);
-    const glm::vec3 size = upper - lower;
-    const float scale = 2.0f / std::max({size.x, size.y, size.z});
-    for (auto &t : triangles) {
-        for (glm::vec3 &v : t) {
-            v = (v - middle) * scale;
-        }
-    }
-}
-
-BvhProbeRay make_ray(const glm::vec3 &o, const glm::vec3 &d, float t_max, uint self) {
-    return {{o.x, o.y, o.z}, t_max, {d.x, d.y, d.z}, self};
-}
-
-glm::vec3 vec(const float *v) {
-    return {v[0], v[1], v[2]};
-}
-
-/// A camera that looks at the model from the front, in tiles of 8x8 pixels.
-Rays camera_rays() {
-    Rays rays;
-    for (int tile = 0; tile < (kImageSize / 8) * (kImageSize / 8); ++tile) {
-        for (int i = 0; i < 64; ++i) {
-            const int x = tile % (kImageSize / 8) * 8 + i % 8;
-            const int y = tile / (kImageSize / 8) * 8 + i / 8;
-            const float px = (float(x) + 0.5f) / float(kImageSize) - 0.5f;
-            const float py = (float(y) + 0.5f) / float(kImageSize) - 0.5f;
-            rays.push_back(make_ray({0.3f, 0.4f, 3.2f},
-                                    glm::normalize(glm::vec3(px - 0.08f, py - 0.12f, -1.2f)),
-                                    INFINITY, BVH_NO_PRIM));
-        }
-    }
-    return rays;
-}
-
-/// What a path does next at each hit: a ray in proportion to the cosine, or one to a light.
-void secondary_rays(const Triangles &triangles, const Rays &rays, const Hits &hits, Rays &bounces,
-                    Rays &shadows) {
-    std::mt19937 random(7);
-    std::normal_distribution<float> normal;
-    const glm::vec3 light(2.0f, 3.0f, 2.0f);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (hits[i].prim == BVH_NO_PRIM) {
-            continue;
-        }
-        const auto &t = triangles[hits[i].prim];
-        glm::vec3 n = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
-        n = glm::dot(n, vec(rays[i].d)) > 0.0f ? -n : n;
-        const glm::vec3 p = vec(rays[i].o) + hits[i].t * vec(rays[i].d);
-        const float a = normal(random), b = normal(random), c = normal(random);
-        bounces.push_back(make_ray(p,
-                                   glm::normalize(n + 0.999f * glm::normalize(glm::vec3(a, b, c))),
-                                   INFINITY, hits[i].prim));
-        const float distance = glm::length(light - p);
-        shadows.push_back(make_ray(p, (light - p) / distance, distance, hits[i].prim));
-    }
-}
-
-/// One set of kernels over one tree.
-struct Contender {
-    std::string name;
-    cl::Kernel closest;
-    cl::Kernel any;
+struct Options {
+    int threads = int(std::max(1u, std::thread::hardware_concurrency()));
+    int rounds = 7;
+    int image_size = 1024;
+    std::vector<std::string> kernel_folders;
+    std::vector<std::string> meshes;
 };
 
-struct Tree {
-    cl::Buffer nodes, triangles, spheres;
+// ---- measuring ----
+
+/// Wall and CPU seconds of one call; the latter of all threads.
+struct Seconds {
+    double wall = 0.0;
+    double cpu = 0.0;
 };
 
-Hits trace(const test::ClTestDevice &device, cl::Kernel &kernel, const Tree &tree, const Rays &rays,
-           double *seconds) {
-    const cl::Buffer ray_buffer = device.upload(std::span<const BvhProbeRay>(rays));
-    const cl::Buffer hit_buffer = device.allocate(rays.size() * sizeof(BvhProbeHit));
-    kernel.setArg(0, tree.nodes);
-    kernel.setArg(1, tree.triangles);
-    kernel.setArg(2, tree.spheres);
-    kernel.setArg(3, ray_buffer);
-    kernel.setArg(4, hit_buffer);
-    kernel.setArg(5, cl_uint(rays.size()));
-    device.run(kernel, rays.size()); // compiles the kernel and touches the memory
+template <class Work> Seconds measure(const Work &work) {
     const auto start = std::chrono::steady_clock::now();
-    device.run(kernel, rays.size());
-    *seconds = seconds_since(start);
-    return device.download<BvhProbeHit>(hit_buffer, rays.size());
+    const std::clock_t cpu_start = std::clock();
+    work();
+    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+            double(std::clock() - cpu_start) / CLOCKS_PER_SEC};
 }
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values.empty() ? NAN : values[values.size() / 2];
+}
+
+/// The median of a[i] / b[i].
+double median_ratio(const std::vector<double> &a, const std::vector<double> &b) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        ratios.push_back(a[i] / b[i]);
+    }
+    return median(ratios);
+}
+
+/// A line of /proc/self/status in bytes.
+double process_bytes(const std::string &key) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.rfind(key + ":", 0) == 0) {
+            return 1024.0 * std::stod(line.substr(key.size() + 1));
+        }
+    }
+    return NAN;
+}
+
+/// The largest memory in use during `work` less what was in use before.
+template <class Work> double peak_bytes(const Work &work) {
+    malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << 5; // the high-water mark starts anew
+    const double before = process_bytes("VmRSS");
+    work();
+    return process_bytes("VmHWM") - before;
+}
+
+// ---- columns ----
+
+struct Column {
+    std::string name;
+    std::function<void(const RaySet &)> trace;
+    std::vector<double> rates;
+};
+
+/// The kernels for closest and any hits of one program.
+struct Kernels {
+    cl::Kernel closest, any;
+};
+
+/// The tree and the rays on the device.
+class DeviceTree {
+public:
+    DeviceTree(const test::ClTestDevice &device, const Bvh &bvh)
+        : device_(device), nodes_(device.upload(std::span<const BvhNode>(bvh.nodes))),
+          triangles_(device.upload(std::span<const TriangleBlock>(bvh.triangle_blocks))),
+          spheres_(device.upload(std::span<const SphereBlock>(bvh.sphere_blocks))) {}
+
+    void set_rays(const Rays &rays) {
+        rays_ = device_.upload(std::span<const BvhProbeRay>(rays));
+        hits_ = device_.allocate(std::max<std::size_t>(1, rays.size()) * sizeof(BvhProbeHit));
+    }
+
+    void trace(cl::Kernel &kernel, std::size_t count) const {
+        if (count == 0) {
+            return;
+        }
+        kernel.setArg(0, nodes_);
+        kernel.setArg(1, triangles_);
+        kernel.setArg(2, spheres_);
+        kernel.setArg(3, rays_);
+        kernel.setArg(4, hits_);
+        kernel.setArg(5, cl_uint(count));
+        device_.run(kernel, count);
+    }
+
+    [[nodiscard]] Hits hits(std::size_t count) const {
+        return count == 0 ? Hits() : device_.download<BvhProbeHit>(hits_, count);
+    }
+
+private:
+    const test::ClTestDevice &device_;
+    cl::Buffer nodes_, triangles_, spheres_, rays_, hits_;
+};
 
 std::vector<KernelSource> sources_in(const std::filesystem::path &folder) {
     std::vector<KernelSource> sources;
@@ -177,161 +156,215 @@ std::vector<KernelSource> sources_in(const std::filesystem::path &folder) {
     return sources;
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
+Kernels product_kernels(const test::ClTestDevice &device,
+                        const std::vector<KernelSource> &sources) {
+    const cl::Program program = device.build("probes/bvh_probes.cl", "-DLANES=1", sources);
+    return {cl::Kernel(program, "probe_bvh_closest"), cl::Kernel(program, "probe_bvh_any")};
 }
 
+Kernels stack_kernels(const test::ClTestDevice &device) {
+    std::ifstream file(BENCH_STACK_KERNEL);
+    std::stringstream text;
+    text << file.rdbuf();
+    std::vector<KernelSource> sources = embedded_kernel_sources();
+    sources.push_back({"stack_traversal.cl", text.str()});
+    const cl::Program program = device.build("stack_traversal.cl", "-DLANES=1", sources);
+    return {cl::Kernel(program, "bench_stack_closest"), cl::Kernel(program, "bench_stack_any")};
+}
+
+/// All that is compared, compiled once for all meshes.
+struct Contenders {
+    explicit Contenders(const test::ClTestDevice &device, const Options &options)
+        : names{"stackless", "stack"}, kernels{product_kernels(device, embedded_kernel_sources()),
+                                               stack_kernels(device)} {
+        for (const std::string &folder : options.kernel_folders) {
+            names.push_back(folder.substr(folder.size() - std::min<std::size_t>(9, folder.size())));
+            kernels.push_back(product_kernels(device, sources_in(folder)));
+        }
+    }
+    std::vector<std::string> names;
+    std::vector<Kernels> kernels;
+};
+
+// ---- one mesh ----
+
+struct Built {
+    Bvh bvh;
+    std::vector<double> wall, cpu, embree_wall, embree_cpu;
+    double peak = 0.0;
+};
+
+/// Builds in turns with Embree's medium quality.
+Built build_all(const Triangles &triangles, int rounds) {
+    Built built;
+    for (int round = 0; round < rounds; ++round) {
+        built.bvh = Bvh();
+        Seconds ours;
+        built.peak = peak_bytes([&] { ours = measure([&] { built.bvh = build_bvh(triangles); }); });
+        built.wall.push_back(ours.wall);
+        built.cpu.push_back(ours.cpu);
 #ifdef CLRENDER_BENCH_EMBREE
-/// Embree's single-ray calls on the same rays, over all cores.
-class Embree {
-public:
-    explicit Embree(const Triangles &triangles) {
-        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto *vertices = static_cast<glm::vec3 *>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(glm::vec3), 3 * triangles.size()));
-        auto *indices = static_cast<uint *>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(uint), triangles.size()));
-        for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
-            vertices[i] = triangles[i / 3][i % 3];
-            indices[i] = uint(i);
-        }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_, geometry);
-        rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-        rtcCommitScene(scene_);
-    }
-
-    [[nodiscard]] double trace(const Rays &rays, bool any) const {
-        const auto start = std::chrono::steady_clock::now();
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 4096),
-                          [&](const tbb::blocked_range<std::size_t> &range) {
-                              RTCIntersectContext context;
-                              rtcInitIntersectContext(&context);
-                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                                  trace_one(context, rays[i], any);
-                              }
-                          });
-        return seconds_since(start);
-    }
-
-private:
-    void trace_one(RTCIntersectContext &context, const BvhProbeRay &ray, bool any) const {
-        RTCRayHit query{};
-        query.ray = {ray.o[0], ray.o[1], ray.o[2],  1e-4f,       ray.d[0], ray.d[1],
-                     ray.d[2], 0.0f,     ray.t_max, 0xffffffffu, 0,        0};
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        if (any) {
-            rtcOccluded1(scene_, &context, &query.ray);
-        } else {
-            rtcIntersect1(scene_, &context, &query);
-        }
-    }
-
-    RTCDevice device_ = rtcNewDevice(nullptr);
-    RTCScene scene_ = rtcNewScene(device_);
-};
+        const EmbreeScene embree(triangles, RTC_BUILD_QUALITY_MEDIUM);
+        built.embree_wall.push_back(embree.build_wall_seconds());
+        built.embree_cpu.push_back(embree.build_cpu_seconds());
 #endif
-
-struct Workload {
-    const char *label;
-    const Rays *rays;
-    bool any;
-};
-
-double time_of(const test::ClTestDevice &device, Contender &contender, const Tree &tree,
-               const Workload &load) {
-    double seconds = 0.0;
-    trace(device, load.any ? contender.any : contender.closest, tree, *load.rays, &seconds);
-    return seconds;
-}
-
-/// The median of each column, and its ratio to the first one's.
-void print_row(const char *label, const std::vector<std::vector<double>> &rates) {
-    std::printf("%-16s", label);
-    for (const auto &column : rates) {
-        std::printf(" %10.2f (%4.2f)", median(column), median(column) / median(rates[0]));
     }
-    std::printf("\n");
+    return built;
 }
 
-int run(const std::vector<std::string> &arguments) {
-    Triangles triangles = read_obj(arguments.at(0));
-    normalize(triangles);
-    const auto start = std::chrono::steady_clock::now();
-    const Bvh bvh = build_bvh(triangles);
+void print_build(const std::string &mesh, const Triangles &triangles, const Built &built) {
+    const Bvh &bvh = built.bvh;
+    const double count = double(std::max<std::size_t>(1, triangles.size()));
+    const double bytes = double(bvh.nodes.size() * sizeof(BvhNode) +
+                                bvh.triangle_blocks.size() * sizeof(TriangleBlock));
     std::printf(
-        "%zu triangles: built in %.3f s, %zu nodes, %zu blocks (%.2f a block), %d levels, "
+        "\n%s: %zu triangles; %zu nodes in %d levels, %zu blocks (%.2f triangles each), "
         "cost %.2f\n",
-        triangles.size(), seconds_since(start), bvh.nodes.size(), bvh.triangle_blocks.size(),
+        mesh.c_str(), triangles.size(), bvh.nodes.size(), bvh.levels, bvh.triangle_blocks.size(),
         double(bvh.primitives) / double(std::max<std::size_t>(1, bvh.triangle_blocks.size())),
-        bvh.levels, bvh.cost);
-
-    const test::ClTestDevice device;
-    std::vector<Contender> contenders;
-    for (std::size_t i = 1; i < std::max<std::size_t>(2, arguments.size()); ++i) {
-        const bool embedded = arguments.size() < 2;
-        const cl::Program program =
-            device.build("probes/bvh_probes.cl", "-DLANES=1",
-                         embedded ? embedded_kernel_sources() : sources_in(arguments[i]));
-        contenders.push_back({embedded ? "embedded" : arguments[i],
-                              cl::Kernel(program, "probe_bvh_closest"),
-                              cl::Kernel(program, "probe_bvh_any")});
+        bvh.cost);
+    std::printf("  %.1f bytes a triangle on the device, %.1f at the peak of the build (besides the "
+                "triangles)\n",
+                bytes / count, built.peak / count);
+    std::printf("  built in %.3f s (%.3f CPU s)", median(built.wall), median(built.cpu));
+    if (!built.embree_wall.empty()) {
+        std::printf("; Embree, medium quality, %.3f s (%.3f CPU s): ratio %.2f (%.2f)",
+                    median(built.embree_wall), median(built.embree_cpu),
+                    median_ratio(built.wall, built.embree_wall),
+                    median_ratio(built.cpu, built.embree_cpu));
     }
-    const Tree tree{device.upload(std::span<const BvhNode>(bvh.nodes)),
-                    device.upload(std::span<const TriangleBlock>(bvh.triangle_blocks)),
-                    device.upload(std::span<const SphereBlock>(bvh.sphere_blocks))};
-
-    const Rays camera = camera_rays();
-    double unused = 0.0;
-    const Hits hits = trace(device, contenders[0].closest, tree, camera, &unused);
-    Rays bounces, shadows;
-    secondary_rays(triangles, camera, hits, bounces, shadows);
-
-    std::printf("million rays a second on %s (and relative to the first column):\n%-16s",
-                device.name().c_str(), "");
-    for (const Contender &contender : contenders) {
-        std::printf(" %17.17s", contender.name.c_str());
-    }
-#ifdef CLRENDER_BENCH_EMBREE
-    const Embree embree(triangles);
-    std::printf(" %17s", "Embree 3");
-#endif
     std::printf("\n");
+}
 
-    for (const Workload &load :
-         {Workload{"camera", &camera, false}, Workload{"diffuse bounce", &bounces, false},
-          Workload{"shadow", &shadows, true}}) {
-        std::vector<std::vector<double>> rates(contenders.size());
-        std::vector<double> embree_rates;
-        const double million = double(load.rays->size()) * 1e-6;
-        for (int round = 0; round < kRounds; ++round) {
-            for (std::size_t i = 0; i < contenders.size(); ++i) {
-                rates[i].push_back(million / time_of(device, contenders[i], tree, load));
-            }
-#ifdef CLRENDER_BENCH_EMBREE
-            embree_rates.push_back(million / embree.trace(*load.rays, load.any));
-#endif
-        }
-        if (!embree_rates.empty()) {
-            rates.push_back(embree_rates);
-        }
-        print_row(load.label, rates);
+void print_rates(const RaySet &set, const std::vector<Column> &columns, std::size_t embree) {
+    std::printf("  %-13s %9zu", set.label.c_str(), set.rays.size());
+    for (const Column &column : columns) {
+        std::printf(" %10.2f", median(column.rates));
     }
-    return 0;
+    if (embree < columns.size()) {
+        std::printf(" %8.3f", median_ratio(columns[0].rates, columns[embree].rates));
+    }
+    for (std::size_t i = 2; i < std::min(embree, columns.size()); ++i) {
+        std::printf(" %8.3f", median_ratio(columns[i].rates, columns[0].rates));
+    }
+    std::printf("\n");
+}
+
+void trace_in_turns(const RaySet &set, std::vector<Column> &columns, int rounds) {
+    for (Column &column : columns) {
+        column.rates.clear();
+        column.trace(set); // compiles the kernel and touches the memory
+    }
+    for (int round = 0; round < rounds; ++round) {
+        for (Column &column : columns) {
+            const double seconds = measure([&] { column.trace(set); }).cpu;
+            column.rates.push_back(double(set.rays.size()) * 1e-6 / seconds);
+        }
+    }
+}
+
+void run_mesh(const std::string &mesh, const test::ClTestDevice &device, Contenders &contenders,
+              const Options &options) {
+    const Triangles triangles = load_mesh(mesh);
+    const Built built = build_all(triangles, std::min(3, options.rounds));
+    print_build(mesh, triangles, built);
+
+    DeviceTree tree(device, built.bvh);
+    const auto closest = [&](const Rays &rays) {
+        tree.set_rays(rays);
+        tree.trace(contenders.kernels[0].closest, rays.size());
+        return tree.hits(rays.size());
+    };
+    const std::vector<RaySet> sets = make_rays(triangles, options.image_size, closest);
+
+    std::vector<Column> columns;
+    for (std::size_t i = 0; i < contenders.names.size(); ++i) {
+        Kernels &kernels = contenders.kernels[i];
+        columns.push_back({contenders.names[i],
+                           [&](const RaySet &set) {
+                               tree.trace(set.any ? kernels.any : kernels.closest, set.rays.size());
+                           },
+                           {}});
+    }
+    const std::size_t first_embree = columns.size();
+#ifdef CLRENDER_BENCH_EMBREE
+    const EmbreeScene embree(triangles, RTC_BUILD_QUALITY_HIGH);
+    columns.push_back({"Embree 1", [&](const RaySet &set) { embree.trace_single(set); }, {}});
+    columns.push_back({"Embree 8", [&](const RaySet &set) { embree.trace_packets(set); }, {}});
+#endif
+
+    std::printf("  %-13s %9s", "", "rays");
+    for (const Column &column : columns) {
+        std::printf(" %10s", column.name.c_str());
+    }
+    std::printf(" %8s\n", first_embree < columns.size() ? "ratio" : "");
+    for (const RaySet &set : sets) {
+        if (!set.rays.empty()) {
+            tree.set_rays(set.rays);
+            trace_in_turns(set, columns, options.rounds);
+            print_rates(set, columns, first_embree);
+        }
+    }
+    std::fflush(stdout);
+}
+
+// ---- the command line ----
+
+std::vector<std::string> default_meshes() {
+    const auto file_or = [](const char *file, const char *otherwise) {
+        return std::string(std::filesystem::exists(file) ? file : otherwise);
+    };
+    return {file_or("../shared/meshes/spot.obj", "creature:6000"),
+            file_or("../shared/meshes/bunny.obj", "creature:70000"), "creature:1000000",
+            "creature:10000000"};
+}
+
+Options parse(const std::vector<std::string> &words) {
+    Options options;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string &word = words[i];
+        if (word.rfind("--", 0) != 0) {
+            options.meshes.push_back(word);
+            continue;
+        }
+        const std::string value = i + 1 < words.size() ? words[++i] : "";
+        if (word == "--kernels" && !value.empty()) {
+            options.kernel_folders.push_back(value);
+        } else if (word == "--threads" || word == "--rounds" || word == "--size") {
+            int &number = word == "--threads"  ? options.threads
+                          : word == "--rounds" ? options.rounds
+                                               : options.image_size;
+            number = std::max(1, std::stoi(value));
+        } else {
+            throw std::invalid_argument("what is " + word + "?");
+        }
+    }
+    if (options.meshes.empty()) {
+        options.meshes = default_meshes();
+    }
+    return options;
+}
+
+void run(const Options &options) {
+    // PoCL reads its number of threads when the device is opened.
+    setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(options.threads).c_str(), 1);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    std::size_t(options.threads));
+    const test::ClTestDevice device;
+    std::printf("million rays a CPU second, %d threads, %s\n", options.threads,
+                device.name().c_str());
+    Contenders contenders(device, options);
+    for (const std::string &mesh : options.meshes) {
+        run_mesh(mesh, device, contenders, options);
+    }
 }
 
 } // namespace
 
 int main(int argc, char **argv) {
-    if (argc < 2) {
-        std::fprintf(stderr, "usage: bench_traversal MODEL.obj [KERNEL_DIR...]\n");
-        return 2;
-    }
     try {
-        return run(std::vector<std::string>(argv + 1, argv + argc));
+        run(parse(std::vector<std::string>(argv + 1, argv + argc)));
+        return 0;
     } catch (const std::exception &error) {
         std::fprintf(stderr, "bench_traversal: %s\n", error.what());
         return 1;

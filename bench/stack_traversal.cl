@@ -1,0 +1,117 @@
+/* What the stackless traversal of bvh.clh is compared with: the same tree, boxes and blocks, but
+   the children that a ray has still to visit lie on a stack of its own, with their distances, so
+   that no box is tested twice. For the benchmark alone; one ray a work-item, width 1. */
+
+#include "bvh.clh"
+#include "shared/bvh_probe.h"
+
+#define STACK_SIZE (7 * BVH_MAX_LEVELS + 1)
+
+/* Puts the children in `bits` on the stack, the nearest on top. */
+static inline uint stack_push(uint *children, float *entries, uint top,
+                              __global const BvhNode *node, uint bits, float8 entry) {
+    float entry_of[BVH_WIDTH];
+    vstore8(entry, 0, entry_of);
+    const uint base = top;
+    for (; bits != 0u; bits &= bits - 1u) {
+        const uint slot = bvh_lowest_bit(bits);
+        uint place = top++;
+        for (; place > base && entries[place - 1u] < entry_of[slot]; --place) {
+            entries[place] = entries[place - 1u];
+            children[place] = children[place - 1u];
+        }
+        entries[place] = entry_of[slot];
+        children[place] = node->child[slot];
+    }
+    return top;
+}
+
+static inline void stack_closest(__global const BvhNode *nodes,
+                                 __global const TriangleBlock *triangles,
+                                 __global const SphereBlock *spheres, const BvhRay *ray,
+                                 BvhHit *hit) {
+    uint children[STACK_SIZE];
+    float entries[STACK_SIZE];
+    children[0] = bvh_child(BVH_CHILD_INNER, 0u);
+    entries[0] = 0.0f;
+    uint top = 1u;
+    while (top != 0u) {
+        const uint child = children[--top];
+        if (entries[top] > hit->t) {
+            continue;
+        }
+        if (bvh_child_kind(child) == BVH_CHILD_INNER) {
+            __global const BvhNode *node = nodes + bvh_child_index(child);
+            float8 entry;
+            const uint bits = bvh_mask_bits(bvh_meet_boxes(node, ray, hit->t, &entry));
+            top = stack_push(children, entries, top, node, bits, entry);
+        } else {
+            bvh_visit_block(triangles, spheres, child, ray, hit);
+        }
+    }
+}
+
+static inline int stack_any(__global const BvhNode *nodes, __global const TriangleBlock *triangles,
+                            __global const SphereBlock *spheres, const BvhRay *ray, float t_end) {
+    uint children[STACK_SIZE];
+    children[0] = bvh_child(BVH_CHILD_INNER, 0u);
+    uint top = 1u;
+    while (top != 0u) {
+        const uint child = children[--top];
+        if (bvh_child_kind(child) == BVH_CHILD_INNER) {
+            __global const BvhNode *node = nodes + bvh_child_index(child);
+            float8 entry;
+            uint bits = bvh_mask_bits(bvh_meet_boxes(node, ray, t_end, &entry));
+            for (; bits != 0u; bits &= bits - 1u) {
+                children[top++] = node->child[bvh_lowest_bit(bits)];
+            }
+        } else if (bvh_meets_block(triangles, spheres, child, ray, t_end)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+__kernel void bench_stack_closest(__global const BvhNode *nodes,
+                                  __global const TriangleBlock *triangles,
+                                  __global const SphereBlock *spheres,
+                                  __global const BvhProbeRay *rays, __global BvhProbeHit *hits,
+                                  uint count) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= count) {
+        return;
+    }
+    const BvhProbeRay r = rays[i];
+    BvhHit hit;
+    hit.t = bvh_float_below(r.t_max);
+    hit.u = hit.v = 0.0f;
+    hit.prim = BVH_NO_PRIM;
+    BvhRay ray;
+    if (bvh_prepare(&ray, (float3)(r.o[0], r.o[1], r.o[2]), (float3)(r.d[0], r.d[1], r.d[2]),
+                    r.t_max, r.self, nodes->extent)) {
+        stack_closest(nodes, triangles, spheres, &ray, &hit);
+    }
+    hits[i].t = hit.prim == BVH_NO_PRIM ? r.t_max : hit.t;
+    hits[i].prim = hit.prim;
+    hits[i].u = hit.u;
+    hits[i].v = hit.v;
+}
+
+__kernel void bench_stack_any(__global const BvhNode *nodes,
+                              __global const TriangleBlock *triangles,
+                              __global const SphereBlock *spheres,
+                              __global const BvhProbeRay *rays, __global BvhProbeHit *hits,
+                              uint count) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= count) {
+        return;
+    }
+    const BvhProbeRay r = rays[i];
+    BvhRay ray;
+    hits[i].prim =
+        bvh_prepare(&ray, (float3)(r.o[0], r.o[1], r.o[2]), (float3)(r.d[0], r.d[1], r.d[2]),
+                    r.t_max, r.self, nodes->extent) &&
+                stack_any(nodes, triangles, spheres, &ray, bvh_float_below(r.t_max))
+            ? 1u
+            : 0u;
+}
