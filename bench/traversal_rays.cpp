@@ -63,11 +63,14 @@ void add_bounces(const Triangles &triangles, const Rays &rays, const Hits &hits,
 }
 
 Rays shadow_rays(const Triangles &triangles, const Rays &rays, const Hits &hits) {
-    const glm::vec3 light(2.0f, 3.0f, 2.0f);
+    // Each tile of the image to one of four lights.
+    const std::array<glm::vec3, 4> lights{glm::vec3(2, 3, 2), glm::vec3(-3, 1, 2),
+                                          glm::vec3(0, 4, -1), glm::vec3(3, -1, -2)};
     Rays shadows;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (hits[i].prim != BVH_NO_PRIM) {
             const glm::vec3 p = place_of(triangles, rays[i], hits[i]).p;
+            const glm::vec3 &light = lights[i / 64 % lights.size()];
             const float distance = glm::length(light - p);
             shadows.push_back(make_ray(p, (light - p) / distance, distance, hits[i].prim));
         }

@@ -1,44 +1,25 @@
 #include "flatten/bvh_builder.h"
 
 #include "flatten/bvh_collapse.h"
+#include "flatten/large_array.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 namespace clrender {
 
 namespace bvh {
 
-void Box::grow(const glm::vec3 &point) {
-    for (int axis = 0; axis < 3; ++axis) {
-        lower[axis] = std::min(lower[axis], point[axis]);
-        upper[axis] = std::max(upper[axis], point[axis]);
-    }
-}
-
-void Box::grow(const Box &box) {
-    for (int axis = 0; axis < 3; ++axis) {
-        lower[axis] = std::min(lower[axis], box.lower[axis]);
-        upper[axis] = std::max(upper[axis], box.upper[axis]);
-    }
-}
-
-double Box::half_area() const {
-    if (lower.x > upper.x) {
-        return 0.0;
-    }
-    const double x = double(upper.x) - lower.x;
-    const double y = double(upper.y) - lower.y;
-    const double z = double(upper.z) - lower.z;
-    return x * y + y * z + z * x;
-}
-
 namespace {
 
+constexpr std::uint32_t kUnusable = 0xffffffffu;
 constexpr int kBins = 16;
+/// Small nodes do with fewer bins, this many and one for each eight primitives.
+constexpr std::uint32_t kFewestBins = 4;
 /// Below this many primitives a node is built by one thread.
 constexpr std::uint32_t kParallelNode = 4096;
 /// From this many on even the binning of one node is shared.
@@ -48,7 +29,13 @@ constexpr int kBalancedFrom = 64;
 
 /// Twice the middle of a box; the factor does not matter to the order.
 float doubled_centroid(const Primitive &p, int axis) {
-    return p.box.lower[axis] + p.box.upper[axis];
+    return p.lower[axis] + p.upper[axis];
+}
+
+/// Blocks that so many primitives fill.
+float blocks_of(std::uint32_t count) {
+    const std::uint32_t blocks = (count + BVH_WIDTH - 1) / BVH_WIDTH;
+    return float(blocks);
 }
 
 struct Bin {
@@ -56,38 +43,59 @@ struct Bin {
     std::uint32_t count = 0;
 };
 
+/// The two boxes a node needs: of its primitives, and of their doubled centroids.
+struct Bounds {
+    Box box;
+    Box centroids;
+
+    void add(const Primitive &p) {
+        const Box other = p.box();
+        box.grow(other);
+        centroids.grow(other.lower + other.upper);
+    }
+    void add(const Bounds &other) {
+        box.grow(other.box);
+        centroids.grow(other.centroids);
+    }
+};
+
 /// Along each axis, the range of the centroids and the primitives sorted into equal slices of it.
 class Binning {
 public:
-    explicit Binning(const Box &centroids) {
+    Binning(const Box &centroids, std::uint32_t count)
+        : bin_count_(int(std::min<std::uint32_t>(kBins, kFewestBins + count / BVH_WIDTH))),
+          origin_(centroids.lower) {
         for (int axis = 0; axis < 3; ++axis) {
             const float extent = centroids.upper[axis] - centroids.lower[axis];
-            origin_[axis] = centroids.lower[axis];
+            scale_[axis] = float(bin_count_) * 0.9999f / extent;
             // A range so small that its reciprocal overflows counts as flat.
-            scale_[axis] = float(kBins) * 0.9999f / extent;
             flat_[axis] = !(extent > 0.0f) || !std::isfinite(scale_[axis]);
+            if (flat_[axis]) {
+                scale_[axis] = 0.0f;
+            }
         }
+        scale_[3] = 0.0f;
     }
 
     [[nodiscard]] int bin_of(const Primitive &p, int axis) const {
         const float position = (doubled_centroid(p, axis) - origin_[axis]) * scale_[axis];
-        return std::min(int(position), kBins - 1);
+        return std::min(int(position), bin_count_ - 1);
     }
 
     void add(const Primitive &p) {
+        const Box box = p.box();
+        const Point position = ((box.lower + box.upper) - origin_) * scale_;
         for (int axis = 0; axis < 3; ++axis) {
-            if (!flat_[axis]) {
-                Bin &bin = bins_[axis][bin_of(p, axis)];
-                bin.box.grow(p.box);
-                ++bin.count;
-            }
+            Bin &bin = bins_[axis][std::min(int(position[axis]), bin_count_ - 1)];
+            bin.box.grow(box);
+            ++bin.count;
         }
     }
 
     /// Minima, maxima and counts: the result does not depend on who added what.
     void add(const Binning &other) {
         for (int axis = 0; axis < 3; ++axis) {
-            for (int i = 0; i < kBins; ++i) {
+            for (int i = 0; i < bin_count_; ++i) {
                 bins_[axis][i].box.grow(other.bins_[axis][i].box);
                 bins_[axis][i].count += other.bins_[axis][i].count;
             }
@@ -97,61 +105,48 @@ public:
     struct Split {
         int axis = -1; ///< -1: all centroids coincide
         int bin = 0;   ///< first bin of the right side
-        double cost = std::numeric_limits<double>::infinity();
+        float cost = std::numeric_limits<float>::infinity();
     };
 
-    [[nodiscard]] Split cheapest_split() const {
+    /// `scale` is the reciprocal of the tree's size.
+    [[nodiscard]] Split cheapest_split(float scale) const {
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
             if (!flat_[axis]) {
-                search_axis(axis, best);
+                search_axis(axis, scale, best);
             }
         }
         return best;
     }
 
 private:
-    /// Surface area heuristic: area times count on either side, for each border between two bins.
-    void search_axis(int axis, Split &best) const {
-        std::array<double, kBins> right_cost{};
-        std::array<bool, kBins> right_filled{};
+    /// Surface area heuristic: area times blocks on either side, for each border between two bins.
+    void search_axis(int axis, float scale, Split &best) const {
+        std::array<float, kBins> right_cost;
+        std::array<std::uint32_t, kBins> right_count;
         Bin right;
-        for (int i = kBins - 1; i > 0; --i) {
+        for (int i = bin_count_ - 1; i > 0; --i) {
             right.box.grow(bins_[axis][i].box);
             right.count += bins_[axis][i].count;
-            right_cost[i] = right.box.half_area() * right.count;
-            right_filled[i] = right.count > 0;
+            right_cost[i] = right.box.half_area(scale) * blocks_of(right.count);
+            right_count[i] = right.count;
         }
         Bin left;
-        for (int i = 1; i < kBins; ++i) {
+        for (int i = 1; i < bin_count_; ++i) {
             left.box.grow(bins_[axis][i - 1].box);
             left.count += bins_[axis][i - 1].count;
-            const double cost = left.box.half_area() * left.count + right_cost[i];
-            if (left.count > 0 && right_filled[i] && cost < best.cost) {
+            const float cost = left.box.half_area(scale) * blocks_of(left.count) + right_cost[i];
+            if (left.count > 0 && right_count[i] > 0 && cost < best.cost) {
                 best = {axis, i, cost};
             }
         }
     }
 
     std::array<std::array<Bin, kBins>, 3> bins_;
-    glm::vec3 origin_{0.0f};
-    glm::vec3 scale_{0.0f};
+    int bin_count_;
+    Point origin_;
+    Point scale_;
     std::array<bool, 3> flat_{};
-};
-
-/// The two boxes a node needs: of its primitives, and of their doubled centroids.
-struct Bounds {
-    Box box;
-    Box centroids;
-
-    void add(const Primitive &p) {
-        box.grow(p.box);
-        centroids.grow(p.box.lower + p.box.upper);
-    }
-    void add(const Bounds &other) {
-        box.grow(other.box);
-        centroids.grow(other.centroids);
-    }
 };
 
 /// Adds the primitives to `result`, shared among threads when there are many.
@@ -176,67 +171,106 @@ Result reduce(std::span<const Primitive> primitives, const Result &empty, bool p
 /// Builds the binary tree; the primitives are put into the order of its leaves.
 class BinaryBuilder {
 public:
-    BinaryBuilder(std::vector<Primitive> &primitives, bool parallel)
-        : primitives_(primitives), parallel_(parallel), nodes_(2 * primitives.size() - 1) {
-        build(0, 0, std::uint32_t(primitives.size()), 0);
+    BinaryBuilder(const Input &input, std::span<Primitive> primitives, bool parallel)
+        : input_(input), primitives_(primitives), parallel_(parallel),
+          // Only what is written to takes memory, a third of it as a rule.
+          nodes_(2 * primitives.size()) {
+        const Bounds bounds = reduce(std::span<const Primitive>(primitives), Bounds{}, parallel);
+        const Point size = bounds.box.upper - bounds.box.lower;
+        const float largest = std::max({size[0], size[1], size[2]});
+        scale_ = largest > 0.0f ? std::min(1.0f / largest, kLargestScale) : 1.0f;
+        build(0, {0, std::uint32_t(primitives.size()), bounds}, 0);
     }
 
-    [[nodiscard]] std::vector<BinaryNode> take() { return std::move(nodes_); }
+    [[nodiscard]] std::span<const BinaryNode> nodes() const {
+        return {nodes_.data(), next_node_.load()};
+    }
 
 private:
-    void build(std::uint32_t index, std::uint32_t begin, std::uint32_t count, int depth) {
-        const std::span<Primitive> range(primitives_.data() + begin, count);
-        const Bounds bounds = reduce(std::span<const Primitive>(range), Bounds{}, parallel_);
+    /// Or the scale of a tree without extent would be infinite.
+    static constexpr float kLargestScale = 1e30f;
+
+    struct Part {
+        std::uint32_t begin, count;
+        Bounds bounds;
+    };
+
+    void build(std::uint32_t index, const Part &part, int depth) {
         BinaryNode &node = nodes_[index];
-        node = {bounds.box, 0, begin, count};
-        if (count == 1) {
+        node = {part.bounds.box, 0, part.begin, part.count};
+        if (input_.is_block(primitives_.subspan(part.begin, part.count))) {
             return;
         }
 
-        const std::uint32_t left = split(range, bounds.centroids, depth);
+        const std::pair<Part, Part> parts = split(part, depth);
         // Where the pair of children lies depends on the threads; what the tree is does not.
         const std::uint32_t child = next_node_.fetch_add(2, std::memory_order_relaxed);
         node.first_child = child;
         run_both(
-            parallel_ && count > kParallelNode, [&] { build(child, begin, left, depth + 1); },
-            [&] { build(child + 1, begin + left, count - left, depth + 1); });
+            parallel_ && part.count > kParallelNode, [&] { build(child, parts.first, depth + 1); },
+            [&] { build(child + 1, parts.second, depth + 1); });
     }
 
-    /// Reorders `range` into a left and a right part, neither empty; returns the left one's length.
-    std::uint32_t split(std::span<Primitive> range, const Box &centroids, int depth) const {
-        if (depth < kBalancedFrom && range.size() > 2) {
-            const Binning binning =
-                reduce(std::span<const Primitive>(range), Binning(centroids), parallel_);
-            const Binning::Split best = binning.cheapest_split();
+    /// Reorders the primitives of `part` into a left and a right part, neither empty.
+    [[nodiscard]] std::pair<Part, Part> split(const Part &part, int depth) const {
+        const std::span<Primitive> range = primitives_.subspan(part.begin, part.count);
+        if (depth < kBalancedFrom && part.count > 2) {
+            const Binning binning = reduce(std::span<const Primitive>(range),
+                                           Binning(part.bounds.centroids, part.count), parallel_);
+            const Binning::Split best = binning.cheapest_split(scale_);
             if (best.axis >= 0) {
-                const auto middle =
-                    std::partition(range.begin(), range.end(), [&](const Primitive &p) {
-                        return binning.bin_of(p, best.axis) < best.bin;
-                    });
-                return std::uint32_t(middle - range.begin());
+                return partition(part, [&](const Primitive &p) {
+                    return binning.bin_of(p, best.axis) < best.bin;
+                });
             }
         }
-        return split_in_half(range, centroids);
+        return split_in_half(part);
+    }
+
+    /// Those of which `is_left` is true to the left, and the bounds of both on the way.
+    template <class IsLeft>
+    [[nodiscard]] std::pair<Part, Part> partition(const Part &part, const IsLeft &is_left) const {
+        Primitive *low = primitives_.data() + part.begin;
+        Primitive *high = low + part.count;
+        Bounds left, right;
+        while (low < high) {
+            if (is_left(*low)) {
+                left.add(*low++);
+            } else {
+                right.add(*low);
+                std::swap(*low, *--high);
+            }
+        }
+        const auto middle = std::uint32_t(low - primitives_.data());
+        return {{part.begin, middle - part.begin, left},
+                {middle, part.begin + part.count - middle, right}};
     }
 
     /// The fallback: equal counts along the longest axis, ties settled by the index.
-    static std::uint32_t split_in_half(std::span<Primitive> range, const Box &centroids) {
-        const glm::vec3 extent = centroids.upper - centroids.lower;
-        int axis = extent.y > extent.x ? 1 : 0;
-        axis = extent.z > extent[axis] ? 2 : axis;
-        const auto middle = range.begin() + std::ptrdiff_t(range.size() / 2);
-        std::nth_element(range.begin(), middle, range.end(),
+    [[nodiscard]] std::pair<Part, Part> split_in_half(const Part &part) const {
+        const std::span<Primitive> range = primitives_.subspan(part.begin, part.count);
+        const Point extent = part.bounds.centroids.upper - part.bounds.centroids.lower;
+        int axis = extent[1] > extent[0] ? 1 : 0;
+        axis = extent[2] > extent[axis] ? 2 : axis;
+        const std::uint32_t half = part.count / 2;
+        std::nth_element(range.begin(), range.begin() + half, range.end(),
                          [axis](const Primitive &a, const Primitive &b) {
                              const float ca = doubled_centroid(a, axis);
                              const float cb = doubled_centroid(b, axis);
                              return ca < cb || (ca == cb && a.index < b.index);
                          });
-        return std::uint32_t(middle - range.begin());
+        const auto bounds_of = [&](std::span<const Primitive> primitives) {
+            return reduce(primitives, Bounds{}, parallel_);
+        };
+        return {{part.begin, half, bounds_of(range.first(half))},
+                {part.begin + half, part.count - half, bounds_of(range.subspan(half))}};
     }
 
-    std::vector<Primitive> &primitives_;
+    const Input &input_;
+    std::span<Primitive> primitives_;
     bool parallel_;
-    std::vector<BinaryNode> nodes_;
+    LargeArray<BinaryNode> nodes_;
+    float scale_ = 1.0f;
     std::atomic<std::uint32_t> next_node_{1};
 };
 
@@ -255,35 +289,53 @@ bool has_area(const std::array<glm::vec3, 3> &t) {
     return a.y * b.z != a.z * b.y || a.z * b.x != a.x * b.z || a.x * b.y != a.y * b.x;
 }
 
-std::vector<Primitive> usable_primitives(const Input &input) {
-    std::vector<Primitive> primitives;
-    primitives.reserve(input.triangles.size() + input.spheres.size());
-    for (std::size_t i = 0; i < input.triangles.size(); ++i) {
-        const auto &t = input.triangles[i];
-        if (in_range(t[0]) && in_range(t[1]) && in_range(t[2]) && has_area(t)) {
-            Primitive &p = primitives.emplace_back();
-            p.index = std::uint32_t(i);
-            p.box.grow(t[0]);
-            p.box.grow(t[1]);
-            p.box.grow(t[2]);
-        }
+/// The primitive of a triangle, or false.
+bool make_primitive(const Input &input, std::size_t index, Primitive &primitive) {
+    Box box;
+    if (index < input.triangles.size()) {
+        const auto &t = input.triangles[index];
+        box.grow(Point(t[0]));
+        box.grow(Point(t[1]));
+        box.grow(Point(t[2]));
+        primitive.set(box, std::uint32_t(index));
+        return in_range(t[0]) && in_range(t[1]) && in_range(t[2]) && has_area(t);
     }
-    for (std::size_t i = 0; i < input.spheres.size(); ++i) {
-        const BvhSphere &s = input.spheres[i];
-        // The sums round to nearest; one step outwards makes the box contain the sphere.
-        const float radius = std::nextafter(s.radius, BVH_COORDINATE_LIMIT);
-        const glm::vec3 lower = s.center - radius;
-        const glm::vec3 upper = s.center + radius;
-        if (s.radius > 0.0f && in_range(lower) && in_range(upper)) {
-            Primitive &p = primitives.emplace_back();
-            p.index = std::uint32_t(input.triangles.size() + i);
-            for (int axis = 0; axis < 3; ++axis) {
-                p.box.lower[axis] = std::nextafter(lower[axis], -BVH_COORDINATE_LIMIT);
-                p.box.upper[axis] = std::nextafter(upper[axis], BVH_COORDINATE_LIMIT);
+    const BvhSphere &s = input.spheres[index - input.triangles.size()];
+    // The sums round to nearest; one step outwards makes the box contain the sphere.
+    const float radius = std::nextafter(s.radius, BVH_COORDINATE_LIMIT);
+    const glm::vec3 lower = s.center - radius;
+    const glm::vec3 upper = s.center + radius;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = std::nextafter(lower[axis], -BVH_COORDINATE_LIMIT);
+        box.upper[axis] = std::nextafter(upper[axis], BVH_COORDINATE_LIMIT);
+    }
+    primitive.set(box, std::uint32_t(index));
+    return s.radius > 0.0f && in_range(lower) && in_range(upper);
+}
+
+/// All that a ray can hit, in the order of the input; returns how many.
+std::size_t usable_primitives(const Input &input, bool parallel, std::span<Primitive> primitives) {
+    std::atomic<bool> all_usable{true};
+    const auto make_range = [&](const tbb::blocked_range<std::size_t> &range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            if (!make_primitive(input, i, primitives[i])) {
+                primitives[i].index = kUnusable;
+                all_usable.store(false, std::memory_order_relaxed);
             }
         }
+    };
+    const tbb::blocked_range<std::size_t> all(0, primitives.size(), kParallelNode);
+    if (parallel) {
+        tbb::parallel_for(all, make_range);
+    } else {
+        make_range(all);
     }
-    return primitives;
+    if (all_usable) {
+        return primitives.size();
+    }
+    const auto end = std::remove_if(primitives.begin(), primitives.end(),
+                                    [](const Primitive &p) { return p.index == kUnusable; });
+    return std::size_t(end - primitives.begin());
 }
 
 } // namespace
@@ -292,16 +344,20 @@ std::vector<Primitive> usable_primitives(const Input &input) {
 Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles,
               std::span<const BvhSphere> spheres, const BvhOptions &options) {
     const bvh::Input input{triangles, spheres};
-    std::vector<bvh::Primitive> primitives = bvh::usable_primitives(input);
+    bvh::LargeArray<bvh::Primitive> storage(triangles.size() + spheres.size());
+    const std::span<bvh::Primitive> all(storage.data(), triangles.size() + spheres.size());
+    const std::span<bvh::Primitive> primitives =
+        all.first(bvh::usable_primitives(input, options.parallel, all));
 
     Bvh result;
     result.primitives = primitives.size();
-    result.degenerate = triangles.size() + spheres.size() - primitives.size();
-    std::vector<bvh::BinaryNode> binary;
-    if (!primitives.empty()) {
-        binary = bvh::BinaryBuilder(primitives, options.parallel).take();
+    result.degenerate = all.size() - primitives.size();
+    if (primitives.empty()) {
+        bvh::collapse(input, {}, {}, options, result);
+    } else {
+        const bvh::BinaryBuilder builder(input, primitives, options.parallel);
+        bvh::collapse(input, primitives, builder.nodes(), options, result);
     }
-    bvh::collapse(input, primitives, binary, options, result);
     return result;
 }
 

@@ -47,10 +47,11 @@ struct Bvh {
 };
 
 /// Triangle i has prim id i. Coordinates are float32, already recentred and scaled by the caller.
-/// Binned SAH (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007) down to
-/// single primitives, then the cheapest 8-wide tree found by dynamic programming (Ylitie, Karras,
-/// Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", 2017, section
-/// 3.1). The same input gives the same tree on any number of threads.
+/// Binned SAH (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), which
+/// counts blocks in place of primitives, down to what one block holds; then the cheapest 8-wide
+/// tree found by dynamic programming (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on
+/// GPUs through compressed wide BVHs", 2017, section 3.1). The same input gives the same tree on
+/// any number of threads.
 [[nodiscard]] Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles,
                             std::span<const BvhSphere> spheres = {},
                             const BvhOptions &options = {});

@@ -1,7 +1,9 @@
 #include "flatten/bvh_collapse.h"
+#include "flatten/large_array.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tbb/parallel_for.h>
 
 namespace clrender::bvh {
 
@@ -9,6 +11,8 @@ namespace {
 
 constexpr int kWidth = BVH_WIDTH;
 constexpr std::uint32_t kParallelNode = 4096;
+/// The reciprocal of anything smaller is not finite, or nearly so.
+constexpr float kTiny = 1e-30f;
 
 /// What one child of a wide node stands for: primitives [begin, begin + count), and the binary node
 /// that holds exactly them, where there is one.
@@ -19,6 +23,11 @@ struct Part {
     std::uint32_t count = 0;
 };
 
+/// What a block holds: primitives [begin, begin + count).
+struct Run {
+    std::uint32_t begin, count;
+};
+
 /// At most eight parts; `count` of them are set.
 struct Parts {
     std::array<Part, kWidth> part;
@@ -26,14 +35,12 @@ struct Parts {
 };
 
 /// The cheapest way to stand a binary subtree in for 1 to 7 children of a wide node.
-/// Ylitie et al. 2017, section 3.1: C(n, 1) = min(leaf, inner), C(n, i) = min over k of
+/// Ylitie et al. 2017, section 3.1: C(n, 1) = block or inner node, C(n, i) = min over k of
 /// C(left, k) + C(right, i - k), or C(n, i - 1) when more children do not pay.
 struct Choice {
     std::array<float, kWidth - 1> cost;          ///< [i - 1]: with i children
+    std::array<std::uint8_t, kWidth - 1> levels; ///< [i - 1]: of inner nodes, at and below them
     std::array<std::uint8_t, kWidth> left_share; ///< [i - 1]: k; 0: as with i - 1 children
-    bool is_leaf;                                ///< with one child: a block, else an inner node
-    bool one_kind;                               ///< all triangles or all spheres
-    std::uint8_t levels;                         ///< as an inner node: levels below and with it
 };
 
 class Collapser {
@@ -42,8 +49,13 @@ public:
               std::span<const BinaryNode> binary, const BvhOptions &options, Bvh &bvh)
         : input_(input), primitives_(primitives), binary_(binary), options_(options), bvh_(bvh),
           choices_(binary.size()) {
-        const double area = binary.empty() ? 0.0 : binary[0].box.half_area();
-        area_scale_ = area > 0.0 ? 1.0 / area : 1.0;
+        if (!binary.empty()) {
+            const Point size = binary[0].box.upper - binary[0].box.lower;
+            const float largest = std::max({size[0], size[1], size[2]});
+            scale_ = largest > kTiny ? 1.0f / largest : 1.0f;
+            const float area = binary[0].box.half_area(scale_);
+            area_scale_ = area > kTiny ? 1.0f / area : 1.0f;
+        }
     }
 
     void run() {
@@ -51,14 +63,15 @@ public:
         if (!binary_.empty()) {
             choose(0);
             root = {0, 0, binary_[0].count};
-            bvh_.cost = inner_cost(0);
+            bvh_.cost = double(root_cost());
         }
-        bvh_.nodes.reserve(primitives_.size() / 16 + 1);
+        bvh_.nodes.reserve(primitives_.size() / 24 + 1);
         emit_node(root, 0, 1);
         const float extent = largest_coordinate();
         for (BvhNode &node : bvh_.nodes) {
             node.extent = extent;
         }
+        fill_blocks();
     }
 
 private:
@@ -69,10 +82,8 @@ private:
         Choice &choice = choices_[index];
         if (node.is_leaf()) {
             choice.cost.fill(leaf_cost(index));
+            choice.levels.fill(0);
             choice.left_share.fill(0);
-            choice.is_leaf = true;
-            choice.one_kind = true;
-            choice.levels = 1;
             return;
         }
 
@@ -80,27 +91,21 @@ private:
         run_both(
             options_.parallel && node.count > kParallelNode, [&] { choose(left); },
             [&] { choose(left + 1); });
-        choice.one_kind = choices_[left].one_kind && choices_[left + 1].one_kind &&
-                          input_.is_sphere(primitives_[node.begin]) ==
-                              input_.is_sphere(primitives_[binary_[left + 1].begin]);
 
         // As an inner node all eight children are at the disposal of the two halves.
-        std::array<float, kWidth> shared_cost;
-        for (int children = 2; children <= kWidth; ++children) {
-            shared_cost[children - 1] = cheapest_share(index, children);
-        }
-        choice.cost[0] = float(area(index) * options_.node_cost) + shared_cost[kWidth - 1];
-        choice.is_leaf = may_be_leaf(index) && leaf_cost(index) <= choice.cost[0];
-        if (choice.is_leaf) {
-            choice.cost[0] = leaf_cost(index);
-        }
-        for (int i = 1; i < kWidth - 1; ++i) {
-            choice.cost[i] = std::min(shared_cost[i], choice.cost[i - 1]);
-            if (choice.cost[i - 1] <= shared_cost[i]) {
-                choice.left_share[i] = 0;
+        choice.cost[0] = area(index) * options_.node_cost + cheapest_share(index, kWidth);
+        choice.levels[0] = std::uint8_t(std::min(254, levels_of_share(index, kWidth)) + 1);
+        for (int children = 2; children < kWidth; ++children) {
+            const float shared = cheapest_share(index, children);
+            if (choice.cost[children - 2] <= shared) {
+                choice.left_share[children - 1] = 0;
+                choice.cost[children - 1] = choice.cost[children - 2];
+                choice.levels[children - 1] = choice.levels[children - 2];
+            } else {
+                choice.cost[children - 1] = shared;
+                choice.levels[children - 1] = std::uint8_t(levels_of_share(index, children));
             }
         }
-        choice.levels = levels_of(index);
     }
 
     /// min over k of C(left, k) + C(right, children - k); k is noted in left_share.
@@ -121,22 +126,25 @@ private:
         return best;
     }
 
-    [[nodiscard]] bool may_be_leaf(std::uint32_t index) const {
-        return binary_[index].count <= kWidth && choices_[index].one_kind;
+    /// Of the children as cheapest_share has just shared them out.
+    [[nodiscard]] int levels_of_share(std::uint32_t index, int children) const {
+        const std::uint32_t left = binary_[index].first_child;
+        const int k = choices_[index].left_share[children - 1];
+        return std::max(choices_[left].levels[k - 1], choices_[left + 1].levels[children - k - 1]);
     }
 
     /// Relative to the root's area: the chance that a ray through the root meets this box too.
-    [[nodiscard]] double area(std::uint32_t index) const {
-        return binary_[index].box.half_area() * area_scale_;
+    [[nodiscard]] float area(std::uint32_t index) const {
+        return binary_[index].box.half_area(scale_) * area_scale_;
     }
 
     [[nodiscard]] float leaf_cost(std::uint32_t index) const {
-        return float(area(index) * options_.block_cost);
+        return area(index) * options_.block_cost;
     }
 
-    [[nodiscard]] double inner_cost(std::uint32_t index) const {
-        return binary_[index].is_leaf() ? area(index) * (options_.node_cost + options_.block_cost)
-                                        : double(choices_[index].cost[0]);
+    [[nodiscard]] float root_cost() const {
+        return binary_[0].is_leaf() ? area(0) * (options_.node_cost + options_.block_cost)
+                                    : choices_[0].cost[0];
     }
 
     // ---- levels ----
@@ -144,7 +152,7 @@ private:
     /// The cheapest children of `index` as a wide node, from left to right.
     [[nodiscard]] Parts cheapest_parts(std::uint32_t index) const {
         Parts parts;
-        if (choices_[index].is_leaf) { // only the root of a handful of primitives
+        if (binary_[index].is_leaf()) { // only the root of a handful of primitives
             add_part(index, parts);
         } else {
             share_children(index, kWidth, parts);
@@ -175,16 +183,6 @@ private:
         parts.part[parts.count++] = {index, binary_[index].begin, binary_[index].count};
     }
 
-    [[nodiscard]] std::uint8_t levels_of(std::uint32_t index) const {
-        int below = 0;
-        const Parts parts = cheapest_parts(index);
-        for (int i = 0; i < parts.count; ++i) {
-            const Choice &choice = choices_[parts.part[i].binary];
-            below = std::max(below, choice.is_leaf ? 0 : int(choice.levels));
-        }
-        return std::uint8_t(std::min(below + 1, 255));
-    }
-
     /// Levels of inner nodes that equal_parts needs at most: its last one has eight primitives or
     /// less, which are of two kinds.
     [[nodiscard]] static int balanced_levels(std::uint32_t count) {
@@ -196,20 +194,9 @@ private:
     }
 
     [[nodiscard]] bool is_leaf(const Part &part) const {
-        if (part.binary != Part::kNoNode) {
-            return choices_[part.binary].is_leaf;
-        }
-        return part.count <= kWidth && same_kind(part);
-    }
-
-    [[nodiscard]] bool same_kind(const Part &part) const {
-        for (std::uint32_t i = 1; i < part.count; ++i) {
-            if (input_.is_sphere(primitives_[part.begin + i]) !=
-                input_.is_sphere(primitives_[part.begin])) {
-                return false;
-            }
-        }
-        return true;
+        return part.binary != Part::kNoNode
+                   ? binary_[part.binary].is_leaf()
+                   : input_.is_block(primitives_.subspan(part.begin, part.count));
     }
 
     /// Whether `levels` levels of inner nodes suffice for what is below this child.
@@ -218,7 +205,7 @@ private:
             return true;
         }
         const bool cheapest_fits =
-            part.binary != Part::kNoNode && choices_[part.binary].levels <= levels;
+            part.binary != Part::kNoNode && choices_[part.binary].levels[0] <= levels;
         return cheapest_fits || balanced_levels(part.count) <= levels;
     }
 
@@ -283,7 +270,7 @@ private:
     [[nodiscard]] static BvhNode empty_node(std::uint32_t parent) {
         BvhNode node{};
         for (int slot = 0; slot < kWidth; ++slot) {
-            set_box(node, slot, {glm::vec3(BVH_EMPTY_BOUND), glm::vec3(-BVH_EMPTY_BOUND)});
+            set_box(node, slot, {Point(BVH_EMPTY_BOUND), Point(-BVH_EMPTY_BOUND)});
             node.child[slot] = bvh_child(BVH_CHILD_EMPTY, 0);
         }
         node.parent = parent;
@@ -303,23 +290,45 @@ private:
         }
         Box box;
         for (const Primitive &p : primitives_.subspan(part.begin, part.count)) {
-            box.grow(p.box);
+            box.grow(p.box());
         }
         return box;
     }
 
+    /// The reference to a block that fill_blocks fills later.
     [[nodiscard]] std::uint32_t emit_block(const Part &part) {
-        const auto members = primitives_.subspan(part.begin, part.count);
-        if (input_.is_sphere(members[0])) {
-            bvh_.sphere_blocks.push_back(sphere_block(members));
-            return bvh_child(BVH_CHILD_SPHERES, std::uint32_t(bvh_.sphere_blocks.size() - 1));
-        }
-        bvh_.triangle_blocks.push_back(triangle_block(members));
-        return bvh_child(BVH_CHILD_TRIANGLES, std::uint32_t(bvh_.triangle_blocks.size() - 1));
+        const bool spheres = input_.is_sphere(primitives_[part.begin]);
+        std::vector<Run> &runs = spheres ? sphere_runs_ : triangle_runs_;
+        runs.push_back({part.begin, part.count});
+        return bvh_child(spheres ? BVH_CHILD_SPHERES : BVH_CHILD_TRIANGLES,
+                         std::uint32_t(runs.size() - 1));
     }
 
-    [[nodiscard]] TriangleBlock triangle_block(std::span<const Primitive> members) const {
-        TriangleBlock block{};
+    void fill_blocks() {
+        const auto members = [&](const Run &run) {
+            return primitives_.subspan(run.begin, run.count);
+        };
+        bvh_.triangle_blocks.resize(triangle_runs_.size());
+        for_each_index(triangle_runs_.size(), [&](std::size_t i) {
+            fill(bvh_.triangle_blocks[i], members(triangle_runs_[i]));
+        });
+        bvh_.sphere_blocks.resize(sphere_runs_.size());
+        for_each_index(sphere_runs_.size(), [&](std::size_t i) {
+            fill(bvh_.sphere_blocks[i], members(sphere_runs_[i]));
+        });
+    }
+
+    template <class Work> void for_each_index(std::size_t count, const Work &work) const {
+        if (options_.parallel) {
+            tbb::parallel_for(std::size_t(0), count, work);
+        } else {
+            for (std::size_t i = 0; i < count; ++i) {
+                work(i);
+            }
+        }
+    }
+
+    void fill(TriangleBlock &block, std::span<const Primitive> members) const {
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
             const Primitive &p = members[lane < members.size() ? lane : 0];
             const auto &triangle = input_.triangles[p.index];
@@ -330,11 +339,9 @@ private:
             }
             block.prim[lane] = p.index;
         }
-        return block;
     }
 
-    [[nodiscard]] SphereBlock sphere_block(std::span<const Primitive> members) const {
-        SphereBlock block{};
+    void fill(SphereBlock &block, std::span<const Primitive> members) const {
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
             const Primitive &p = members[lane < members.size() ? lane : 0];
             const BvhSphere &sphere = input_.spheres[p.index - input_.triangles.size()];
@@ -344,7 +351,6 @@ private:
             block.radius[lane] = sphere.radius;
             block.prim[lane] = sphere.prim;
         }
-        return block;
     }
 
     [[nodiscard]] float largest_coordinate() const {
@@ -364,8 +370,10 @@ private:
     std::span<const BinaryNode> binary_;
     const BvhOptions &options_;
     Bvh &bvh_;
-    std::vector<Choice> choices_;
-    double area_scale_ = 1.0;
+    LargeArray<Choice> choices_;
+    std::vector<Run> triangle_runs_, sphere_runs_;
+    float scale_ = 1.0f; ///< of lengths, see Box::half_area
+    float area_scale_ = 1.0f;
 };
 
 } // namespace

@@ -4,29 +4,94 @@
 
 #include "flatten/bvh_builder.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace clrender::bvh {
 
-struct Box {
-    glm::vec3 lower{std::numeric_limits<float>::max()};
-    glm::vec3 upper{-std::numeric_limits<float>::max()};
+/// Three coordinates, stored as four: then one vector instruction treats them all.
+struct alignas(16) Point {
+    float c[4];
 
-    void grow(const glm::vec3 &point);
-    void grow(const Box &box);
-    /// Half the surface, 0 when nothing was added. In double: float32 overflows at 1e19 across.
-    [[nodiscard]] double half_area() const;
+    Point() = default;
+    explicit Point(float all) : c{all, all, all, all} {}
+    explicit Point(const glm::vec3 &p) : c{p.x, p.y, p.z, p.z} {}
+    float &operator[](int axis) { return c[axis]; }
+    float operator[](int axis) const { return c[axis]; }
+};
+
+template <class Operation>
+Point each_of(const Point &a, const Point &b, const Operation &operation) {
+    Point result;
+    for (int i = 0; i < 4; ++i) {
+        result.c[i] = operation(a.c[i], b.c[i]);
+    }
+    return result;
+}
+
+inline Point min(const Point &a, const Point &b) {
+    return each_of(a, b, [](float x, float y) { return y < x ? y : x; });
+}
+inline Point max(const Point &a, const Point &b) {
+    return each_of(a, b, [](float x, float y) { return x < y ? y : x; });
+}
+inline Point operator+(const Point &a, const Point &b) {
+    return each_of(a, b, [](float x, float y) { return x + y; });
+}
+inline Point operator-(const Point &a, const Point &b) {
+    return each_of(a, b, [](float x, float y) { return x - y; });
+}
+inline Point operator*(const Point &a, const Point &b) {
+    return each_of(a, b, [](float x, float y) { return x * y; });
+}
+
+struct Box {
+    Point lower{std::numeric_limits<float>::max()};
+    Point upper{-std::numeric_limits<float>::max()};
+
+    void grow(const Point &point) {
+        lower = min(lower, point);
+        upper = max(upper, point);
+    }
+    void grow(const Box &box) {
+        lower = min(lower, box.lower);
+        upper = max(upper, box.upper);
+    }
+    /// Half the surface in units of 1 / scale^2; 0 when nothing was added. The scale keeps the
+    /// product of large coordinates finite.
+    [[nodiscard]] float half_area(float scale) const {
+        const Point size = (upper - lower) * Point(scale);
+        return lower[0] > upper[0] ? 0.0f
+                                   : size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+    }
 };
 
 /// One triangle (`index` into the triangles) or sphere (the number of triangles + its index).
 struct Primitive {
-    Box box;
-    std::uint32_t index = 0;
+    float lower[3];
+    std::uint32_t index;
+    float upper[3];
+    std::uint32_t unused;
+
+    void set(const Box &box, std::uint32_t number) {
+        *this = {{box.lower[0], box.lower[1], box.lower[2]},
+                 number,
+                 {box.upper[0], box.upper[1], box.upper[2]},
+                 0};
+    }
+    [[nodiscard]] Box box() const {
+        Box box;
+        box.lower = Point({lower[0], lower[1], lower[2]});
+        box.upper = Point({upper[0], upper[1], upper[2]});
+        return box;
+    }
 };
+static_assert(sizeof(Primitive) == 32);
 
 /// A node of the binary tree over `Primitive`s [begin, begin + count). The two children lie side by
-/// side; a leaf has none and holds one primitive.
+/// side; a leaf has none and holds what fits into one block: up to eight primitives of one kind.
 struct BinaryNode {
     Box box;
     std::uint32_t first_child = 0;
@@ -42,6 +107,15 @@ struct Input {
     std::span<const BvhSphere> spheres;
 
     [[nodiscard]] bool is_sphere(const Primitive &p) const { return p.index >= triangles.size(); }
+
+    /// Whether these fit into one block.
+    [[nodiscard]] bool is_block(std::span<const Primitive> primitives) const {
+        return primitives.size() <= BVH_WIDTH &&
+               (triangles.empty() || spheres.empty() ||
+                std::all_of(primitives.begin(), primitives.end(), [&](const Primitive &p) {
+                    return is_sphere(p) == is_sphere(primitives[0]);
+                }));
+    }
 };
 
 /// Fills nodes, blocks, levels and cost of `bvh` from the binary tree, whose root is `binary[0]`.
