@@ -1,5 +1,7 @@
 #include "device_scene.h"
 
+#include "upload.h"
+
 #include <algorithm>
 #include <fmt/core.h>
 
@@ -71,10 +73,7 @@ DeviceScene::DeviceScene(const cl::Context &context, const cl::CommandQueue &que
     check_memory(entry, arrays, film_bytes);
     with_device("uploading the scene", [&] {
         for (const View &array : arrays) {
-            constexpr std::size_t least = 256;
-            buffers_.emplace_back(context, CL_MEM_READ_ONLY, std::max(array.bytes, least));
-            if (array.bytes > 0)
-                queue.enqueueWriteBuffer(buffers_.back(), CL_TRUE, 0, array.bytes, array.data);
+            buffers_.push_back(upload(context, queue, array.data, array.bytes));
             bytes_ += array.bytes;
         }
     });

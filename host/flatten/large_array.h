@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace clrender::bvh {
+namespace clrender {
 
 /// Asks the system to back [data, data + bytes) with pages of 2 MiB, where it does that on request:
 /// a large tree is read all over, and there are too few entries for the addresses of small pages.
@@ -26,6 +26,8 @@ inline void advise_huge_pages(void *data, std::size_t bytes) {
     (void)bytes;
 #endif
 }
+
+namespace bvh {
 
 /// An array of unset elements. Throws std::bad_alloc.
 template <class T> class LargeArray {
@@ -58,4 +60,5 @@ private:
     T *data_ = nullptr;
 };
 
-} // namespace clrender::bvh
+} // namespace bvh
+} // namespace clrender

@@ -2,6 +2,7 @@
 /// An OpenCL device for probe kernels: the tests' and benchmarks' own, without the renderer's.
 
 #include "device/kernel_sources.h"
+#include "device/upload.h"
 
 #include <CL/opencl.hpp>
 #include <span>
@@ -21,14 +22,9 @@ public:
     build(const std::string &name, const std::string &options,
           const std::vector<KernelSource> &sources = embedded_kernel_sources()) const;
 
-    /// A buffer with a copy of `values`; of one unset element when there are none.
+    /// A buffer with a copy of `values`.
     template <class T> [[nodiscard]] cl::Buffer upload(std::span<const T> values) const {
-        if (values.empty()) {
-            return cl::Buffer(context_, CL_MEM_READ_ONLY, sizeof(T));
-        }
-        // The runtime copies and never writes; its interface has no const.
-        return cl::Buffer(context_, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size_bytes(),
-                          const_cast<T *>(values.data()));
+        return clrender::upload(context_, queue_, values.data(), values.size_bytes());
     }
 
     [[nodiscard]] cl::Buffer allocate(std::size_t bytes) const {
