@@ -100,6 +100,9 @@ template <class Work> double peak_bytes(const Work &work) {
 
 // ---- columns ----
 
+/// As the renderer compiles them for a scene of meshes.
+constexpr const char *kOptions = "-DLANES=1 -DHAS_BVH_SPHERES=0";
+
 struct Column {
     std::string name;
     std::function<void(const RaySet &)> trace;
@@ -161,7 +164,7 @@ std::vector<KernelSource> sources_in(const std::filesystem::path &folder) {
 
 Kernels product_kernels(const test::ClTestDevice &device,
                         const std::vector<KernelSource> &sources) {
-    const cl::Program program = device.build("probes/bvh_probes.cl", "-DLANES=1", sources);
+    const cl::Program program = device.build("probes/bvh_probes.cl", kOptions, sources);
     return {cl::Kernel(program, "probe_bvh_closest"), cl::Kernel(program, "probe_bvh_any")};
 }
 
@@ -171,7 +174,7 @@ Kernels stack_kernels(const test::ClTestDevice &device) {
     text << file.rdbuf();
     std::vector<KernelSource> sources = embedded_kernel_sources();
     sources.push_back({"stack_traversal.cl", text.str()});
-    const cl::Program program = device.build("stack_traversal.cl", "-DLANES=1", sources);
+    const cl::Program program = device.build("stack_traversal.cl", kOptions, sources);
     return {cl::Kernel(program, "bench_stack_closest"), cl::Kernel(program, "bench_stack_any")};
 }
 

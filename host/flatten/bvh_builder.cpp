@@ -17,9 +17,9 @@ namespace bvh {
 namespace {
 
 constexpr std::uint32_t kUnusable = 0xffffffffu;
-constexpr int kBins = 16;
+constexpr int kBins = 32;
 /// Small nodes do with fewer bins, this many and one for each eight primitives.
-constexpr std::uint32_t kFewestBins = 4;
+constexpr std::uint32_t kFewestBins = 8;
 /// Below this many primitives a node is built by one thread.
 constexpr std::uint32_t kParallelNode = 4096;
 /// From this many on even the binning of one node is shared.
