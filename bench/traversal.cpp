@@ -326,9 +326,9 @@ std::vector<std::string> default_meshes() {
     const auto file_or = [](const char *file, const char *otherwise) {
         return std::string(std::filesystem::exists(file) ? file : otherwise);
     };
-    return {file_or("../shared/meshes/spot.obj", "creature:6000"),
-            file_or("../shared/meshes/bunny.obj", "creature:70000"), "creature:1000000",
-            "creature:10000000"};
+    return {file_or("../shared/meshes/spot.obj", "coral:6000"),
+            file_or("../shared/meshes/bunny.obj", "coral:70000"), "coral:1000000",
+            "coral:10000000"};
 }
 
 Options parse(const std::vector<std::string> &words) {
