@@ -2,8 +2,7 @@
    the children that a ray has still to visit lie on a stack of its own, with their distances, so
    that no box is tested twice. For the benchmark alone; one ray a work-item, width 1. */
 
-#include "bvh.clh"
-#include "shared/bvh_probe.h"
+#include "probes/probe_rays.clh"
 
 #define STACK_SIZE (7 * BVH_MAX_LEVELS + 1)
 
@@ -77,41 +76,45 @@ __kernel void bench_stack_closest(__global const BvhNode *nodes,
                                   __global const SphereBlock *spheres,
                                   __global const BvhProbeRay *rays, __global BvhProbeHit *hits,
                                   uint count) {
-    const uint i = (uint)get_global_id(0);
-    if (i >= count) {
+    const uint first = (uint)get_global_id(0) * LANES;
+    if (first >= count) {
         return;
     }
-    const BvhProbeRay r = rays[i];
-    BvhHit hit;
-    hit.t = bvh_float_below(r.t_max);
-    hit.u = hit.v = 0.0f;
-    hit.prim = BVH_NO_PRIM;
-    BvhRay ray;
-    if (bvh_prepare(&ray, (float3)(r.o[0], r.o[1], r.o[2]), (float3)(r.d[0], r.d[1], r.d[2]),
-                    r.t_max, r.self, nodes->extent)) {
-        stack_closest(nodes, triangles, spheres, &ray, &hit);
+    BvhRays prepared;
+    const uint valid = probe_rays(nodes, rays, first, count, &prepared);
+    for (uint i = 0u; i < LANES && first + i < count; ++i) {
+        const float t_max = rays[first + i].t_max;
+        BvhHit hit;
+        hit.t = bvh_float_below(t_max);
+        hit.u = hit.v = 0.0f;
+        hit.prim = BVH_NO_PRIM;
+        if (valid >> i & 1u) {
+            const BvhRay ray = bvh_ray(&prepared, i);
+            stack_closest(nodes, triangles, spheres, &ray, &hit);
+        }
+        hits[first + i].t = hit.prim == BVH_NO_PRIM ? t_max : hit.t;
+        hits[first + i].prim = hit.prim;
+        hits[first + i].u = hit.u;
+        hits[first + i].v = hit.v;
     }
-    hits[i].t = hit.prim == BVH_NO_PRIM ? r.t_max : hit.t;
-    hits[i].prim = hit.prim;
-    hits[i].u = hit.u;
-    hits[i].v = hit.v;
 }
 
 __kernel void bench_stack_any(__global const BvhNode *nodes,
                               __global const TriangleBlock *triangles,
-                              __global const SphereBlock *spheres,
-                              __global const BvhProbeRay *rays, __global BvhProbeHit *hits,
-                              uint count) {
-    const uint i = (uint)get_global_id(0);
-    if (i >= count) {
+                              __global const SphereBlock *spheres, __global const BvhProbeRay *rays,
+                              __global BvhProbeHit *hits, uint count) {
+    const uint first = (uint)get_global_id(0) * LANES;
+    if (first >= count) {
         return;
     }
-    const BvhProbeRay r = rays[i];
-    BvhRay ray;
-    hits[i].prim =
-        bvh_prepare(&ray, (float3)(r.o[0], r.o[1], r.o[2]), (float3)(r.d[0], r.d[1], r.d[2]),
-                    r.t_max, r.self, nodes->extent) &&
-                stack_any(nodes, triangles, spheres, &ray, bvh_float_below(r.t_max))
-            ? 1u
-            : 0u;
+    BvhRays prepared;
+    const uint valid = probe_rays(nodes, rays, first, count, &prepared);
+    for (uint i = 0u; i < LANES && first + i < count; ++i) {
+        const BvhRay ray = bvh_ray(&prepared, i);
+        hits[first + i].prim =
+            (valid >> i & 1u) && stack_any(nodes, triangles, spheres, &ray,
+                                           bvh_float_below(rays[first + i].t_max))
+                ? 1u
+                : 0u;
+    }
 }

@@ -100,8 +100,15 @@ template <class Work> double peak_bytes(const Work &work) {
 
 // ---- columns ----
 
+/// Rays of a work-item, one traced after the other: as wide as the renderer would be.
+int lanes_of(const test::ClTestDevice &device) {
+    return device.native_width() >= 16 ? 16 : 8;
+}
+
 /// As the renderer compiles them for a scene of meshes.
-constexpr const char *kOptions = "-DLANES=1 -DHAS_BVH_SPHERES=0";
+std::string options_for(const test::ClTestDevice &device) {
+    return "-DHAS_BVH_SPHERES=0 -DLANES=" + std::to_string(lanes_of(device));
+}
 
 struct Column {
     std::string name;
@@ -137,7 +144,8 @@ public:
         kernel.setArg(3, rays_);
         kernel.setArg(4, hits_);
         kernel.setArg(5, cl_uint(count));
-        device_.run(kernel, count);
+        const auto lanes = static_cast<std::size_t>(lanes_of(device_));
+        device_.run(kernel, (count + lanes - 1) / lanes);
     }
 
     [[nodiscard]] Hits hits(std::size_t count) const {
@@ -164,7 +172,7 @@ std::vector<KernelSource> sources_in(const std::filesystem::path &folder) {
 
 Kernels product_kernels(const test::ClTestDevice &device,
                         const std::vector<KernelSource> &sources) {
-    const cl::Program program = device.build("probes/bvh_probes.cl", kOptions, sources);
+    const cl::Program program = device.build("probes/bvh_probes.cl", options_for(device), sources);
     return {cl::Kernel(program, "probe_bvh_closest"), cl::Kernel(program, "probe_bvh_any")};
 }
 
@@ -174,7 +182,7 @@ Kernels stack_kernels(const test::ClTestDevice &device) {
     text << file.rdbuf();
     std::vector<KernelSource> sources = embedded_kernel_sources();
     sources.push_back({"stack_traversal.cl", text.str()});
-    const cl::Program program = device.build("stack_traversal.cl", kOptions, sources);
+    const cl::Program program = device.build("stack_traversal.cl", options_for(device), sources);
     return {cl::Kernel(program, "bench_stack_closest"), cl::Kernel(program, "bench_stack_any")};
 }
 

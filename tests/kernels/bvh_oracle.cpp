@@ -12,9 +12,13 @@ Vector vector(const float *v) {
     return {v[0], v[1], v[2]};
 }
 
+/// Rays of a work-item.
+constexpr int probe_lanes = 8;
+
 struct Probe {
     ClTestDevice device;
-    cl::Program program = device.build("probes/bvh_probes.cl", "-DLANES=1");
+    cl::Program program =
+        device.build("probes/bvh_probes.cl", "-DLANES=" + std::to_string(probe_lanes));
     cl::Kernel closest{program, "probe_bvh_closest"};
     cl::Kernel any{program, "probe_bvh_any"};
 };
@@ -39,7 +43,7 @@ std::vector<BvhProbeHit> run(cl::Kernel &kernel, const Bvh &bvh,
     kernel.setArg(3, ray_buffer);
     kernel.setArg(4, hits);
     kernel.setArg(5, cl_uint(rays.size()));
-    device.run(kernel, rays.size());
+    device.run(kernel, (rays.size() + probe_lanes - 1) / probe_lanes);
     return device.download<BvhProbeHit>(hits, rays.size());
 }
 

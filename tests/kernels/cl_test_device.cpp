@@ -66,6 +66,10 @@ void ClTestDevice::run(const cl::Kernel &kernel, std::size_t items, std::size_t 
     queue_.finish();
 }
 
+int ClTestDevice::native_width() const {
+    return static_cast<int>(device_.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>());
+}
+
 std::string ClTestDevice::name() const {
     return device_.getInfo<CL_DEVICE_NAME>();
 }

@@ -43,6 +43,9 @@ public:
 
     [[nodiscard]] std::string name() const;
 
+    /// Floats of a vector register.
+    [[nodiscard]] int native_width() const;
+
 private:
     cl::Device device_;
     cl::Context context_;

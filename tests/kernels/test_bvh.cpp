@@ -406,8 +406,8 @@ TEST_CASE("a tree is sound, and the same on one thread and on all") {
     CHECK(std::memcmp(bvh.triangle_blocks.data(), serial.triangle_blocks.data(),
                       bvh.triangle_blocks.size() * sizeof(TriangleBlock)) == 0);
 
-    const std::size_t bytes = bvh.nodes.size() * sizeof(BvhNode) +
-                              bvh.triangle_blocks.size() * sizeof(TriangleBlock);
+    const std::size_t bytes =
+        bvh.nodes.size() * sizeof(BvhNode) + bvh.triangle_blocks.size() * sizeof(TriangleBlock);
     CHECK(bytes <= 100 * mesh.size());
 
     std::vector<int> seen(mesh.size(), 0);
