@@ -26,7 +26,7 @@ void lay_into_large_pages(const cl::CommandQueue &queue, const cl::Buffer &buffe
 
 cl::Buffer upload(const cl::Context &context, const cl::CommandQueue &queue, const void *data,
                   std::size_t bytes) {
-    const cl::Buffer buffer(context, CL_MEM_READ_ONLY, std::max(bytes, kLeast));
+    cl::Buffer buffer(context, CL_MEM_READ_ONLY, std::max(bytes, kLeast));
     if (bytes >= kLarge &&
         queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU) {
         lay_into_large_pages(queue, buffer, bytes);
