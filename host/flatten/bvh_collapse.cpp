@@ -71,10 +71,22 @@ public:
         for (BvhNode &node : bvh_.nodes) {
             node.extent = extent;
         }
+        bound_root();
         fill_blocks();
     }
 
 private:
+    /// The box of the whole tree: empty children are inside out, and widen nothing.
+    void bound_root() {
+        BvhNode &root = bvh_.nodes.front();
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto &lower = root.planes[BVH_PLANE_LOWER + axis];
+            const auto &upper = root.planes[BVH_PLANE_UPPER + axis];
+            root.bounds[axis] = *std::min_element(std::begin(lower), std::end(lower));
+            root.bounds[3 + axis] = *std::max_element(std::begin(upper), std::end(upper));
+        }
+    }
+
     // ---- costs, bottom up ----
 
     void choose(std::uint32_t index) {

@@ -35,7 +35,7 @@ typedef struct CLR_ALIGNED(64) BvhNode {
     uint child[BVH_WIDTH];      /* 192: references, see bvh_child_* */
     uint parent;                /* 224: index of the node above; the root names itself */
     float extent;               /* 228: largest |coordinate| of the whole tree */
-    uint unused[6];             /* 232 */
+    float bounds[6]; /* 232: of the root only: lower and upper corner of the whole tree */
 } BvhNode;
 CLR_STATIC_SIZE(BvhNode, 256);
 
