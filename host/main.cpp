@@ -8,6 +8,8 @@
 #include "device/cl_context.h"
 #include "error.h"
 #include "log.h"
+#include "render/profile.h"
+#include "render/profile_trace.h"
 #include "render/render.h"
 #include "scene/load_scene.h"
 
@@ -53,7 +55,8 @@ void apply_options(const cli::Options &options, Scene &scene) {
     }
 }
 
-RenderOptions render_options(const cli::Options &options, cli::Progress &progress) {
+RenderOptions render_options(const cli::Options &options, cli::Progress &progress,
+                             Profile &profile) {
     RenderOptions r;
     r.seed = options.seed.value_or(0);
     r.lanes = options.lanes;
@@ -64,6 +67,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.batch = options.batch;
     r.tile = options.tile;
     r.kernel_dir = options.kernel_dir;
+    r.profile = options.profile ? &profile : nullptr;
     r.on_progress = [&](double paths) { progress.update(paths); };
     r.should_stop = cli::interrupted;
     return r;
@@ -79,11 +83,13 @@ std::map<std::string, std::string> metadata(const cli::Options &options, const S
 }
 
 int render_command(const cli::Options &options) {
-    const auto start = std::chrono::steady_clock::now();
+    Profile profile;
+    const auto start = profile.origin;
     Scene scene = load_scene(options.scene, {options.defines});
     apply_options(options, scene);
     cli::RunTimes times;
     times.parse = seconds_since(start);
+    profile.add_phase("parse", start, std::chrono::steady_clock::now());
     if (options.check) {
         log::info(fmt::format("{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples",
                               options.scene, scene.shapes.size(), scene.emitters.size(),
@@ -95,17 +101,22 @@ int render_command(const cli::Options &options) {
     const double paths =
         static_cast<double>(scene.film.crop_width) * scene.film.crop_height * scene.sample_count;
     cli::Progress progress(paths, scene.sample_count, !options.quiet);
-    const RenderResult result = render_scene(scene, render_options(options, progress));
+    const RenderResult result = render_scene(scene, render_options(options, progress, profile));
     progress.finish();
 
     const auto write_start = std::chrono::steady_clock::now();
     for (const std::string &path : options.outputs)
         write_image(path, result.image, options.exposure, metadata(options, scene, result.stats));
     times.write = seconds_since(write_start);
+    profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
     if (!options.stats.empty())
         cli::write_stats(options.stats, result.stats, times);
     log::info(cli::summary(result, times, options.outputs));
+    if (options.profile)
+        fmt::print("{}", profile_table(profile));
+    if (!options.profile_trace.empty())
+        write_profile_trace(options.profile_trace, profile);
     return result.interrupted ? exit_interrupted : 0;
 }
 

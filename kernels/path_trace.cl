@@ -13,6 +13,7 @@
 #include "environment.clh"
 #include "film.clh"
 #include "light.clh"
+#include "profile.clh"
 #include "sampler.clh"
 #include "scene.clh"
 #include "shared/launch_data.h"
@@ -101,6 +102,7 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
         px = load_int(columns);
         py = load_int(rows);
     }
+    PROFILE_ADD(scene->counts, PROFILE_CAMERA_RAYS, count_lanes(fresh));
     p->pixel = ipick(fresh, py * TILE + px, p->pixel);
     px += work->x;
     py += work->y;
@@ -257,6 +259,8 @@ CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surfa
     if (!any_lane(wanted))
         return;
     p->rays += (uint)count_lanes(wanted);
+    PROFILE_ADD(scene->counts, PROFILE_SHADOW_RAYS, count_lanes(wanted));
+    PROFILE_ADD(scene->counts, PROFILE_SHADOW_STEPS, 1u);
     mask_l lit =
         wanted & ~scene_occluded(scene, o, light.wi, prim, light.prim, light.t_max, wanted);
     real bsdf_pdf = cosine * CLR_INV_PI;
@@ -302,6 +306,8 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
 CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     __global const FrameData *f = scene->frame;
     p->rays += (uint)count_lanes(p->alive);
+    PROFILE_ADD(scene->counts, PROFILE_PATH_RAYS, count_lanes(p->alive));
+    PROFILE_ADD(scene->counts, PROFILE_STEPS, 1u);
     Hit hit = scene_closest(scene, p->o, p->d, p->self, CLIP_END(p), p->alive);
     mask_l met = p->alive & ige(hit.prim, int_of(0));
 #if HAS_CLIP || INTEGRATOR == 1
@@ -357,6 +363,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
 #endif
     if (!any_lane(going))
         return;
+    PROFILE_ADD(scene->counts, PROFILE_BOUNCES, count_lanes(going));
     material = ipick(going, material, int_of(0));
     Bsdf bsdf = bsdf_fetch(scene, surface, material, going);
     vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
@@ -463,16 +470,20 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
            __global const float *texels_f32, __global const float *decode,
            __global const float *env_texels, __global const float *env_cdf,
            __global const uint *env_guide, __global const float *filter, __global FilmPixel *film,
-           __global ItemCounters *item_counters, uint first_item, uint item_count, uint first_block,
-           uint end_block, uint colour, uint stride) {
+           __global ItemCounters *item_counters PROFILE_BUFFER, uint first_item, uint item_count,
+           uint first_block, uint end_block, uint colour, uint stride) {
     if (get_global_id(0) >= item_count)
         return;
-    SceneData scene = {frame,     spheres,         sphere_tests,    planars,      records,
-                       nodes,     triangle_blocks, sphere_blocks,   triangles,    normals,
-                       uvs,       shape_of,        shapes,          shape_frames, materials,
-                       emitters,  lights,          light_triangles, light_nodes,  textures,
-                       texels_u8, texels_f32,      decode,          env_texels,   env_cdf,
-                       env_guide, filter};
+    PROFILE_BEGIN(counts);
+    SceneData scene = {frame,           spheres,       sphere_tests,
+                       planars,         records,       nodes,
+                       triangle_blocks, sphere_blocks, triangles,
+                       normals,         uvs,           shape_of,
+                       shapes,          shape_frames,  materials,
+                       emitters,        lights,        light_triangles,
+                       light_nodes,     textures,      texels_u8,
+                       texels_f32,      decode,        env_texels,
+                       env_cdf,         env_guide,     filter PROFILE_COUNTS};
     const uint dealt = (uint)((ulong)get_global_id(0) * stride % item_count);
     Work work = tile_of_item(frame, first_item + dealt, colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;
@@ -493,4 +504,5 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
     counters.rays_high += low < rays ? 1u : 0u;
     counters.rays_low = low;
     item_counters[tile] = counters;
+    PROFILE_END(item_profile + tile, counts);
 }

@@ -136,6 +136,39 @@ std::string check_folder(const std::string &path) {
     return fs::is_directory(path, ignored) ? "" : fmt::format("there is no folder '{}'", path);
 }
 
+/// What `--profile` without a file becomes.
+constexpr const char *bare_profile = "true";
+
+bool is_json_path(const std::string &text) {
+    return fs::path(text).extension() == ".json";
+}
+
+std::string check_profile(const std::string &text) {
+    if (text == bare_profile)
+        return {};
+    return is_json_path(text) ? check_new_file(text)
+                              : fmt::format("'{}' does not end in .json", text);
+}
+
+/// The arguments in the reverse order that CLI11 wants. `--profile FILE.json` becomes
+/// `--profile=FILE.json`: anything else that follows --profile is not its value.
+std::vector<std::string> reversed_arguments(int argc, const char *const *argv) {
+    std::vector<std::string> arguments;
+    bool options_end = false;
+    for (int i = 1; i < argc; ++i) {
+        std::string argument = argv[i];
+        const std::string next = i + 1 < argc ? argv[i + 1] : "";
+        options_end = options_end || argument == "--";
+        if (!options_end && argument == "--profile" && next[0] != '-' && is_json_path(next)) {
+            argument += "=" + next;
+            ++i;
+        }
+        arguments.push_back(std::move(argument));
+    }
+    std::reverse(arguments.begin(), arguments.end());
+    return arguments;
+}
+
 std::string check_output(const std::string &path) {
     if (!path.empty() && !is_writable_image_path(path))
         return fmt::format("'{}' does not end in .png, .jpg, .hdr, .exr or .pfm", path);
@@ -148,6 +181,7 @@ struct RawOptions {
     std::string lanes = "auto";
     std::string accel = "bvh";
     std::string sampler = "sobol";
+    std::string profile;
     std::vector<std::string> defines;
     bool list_devices = false;
 };
@@ -230,6 +264,11 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("FILE.json")
         ->check(CLI::Validator(check_new_file, ""))
         ->group(group);
+    app.add_flag("--profile", raw.profile,
+                 "Prints where the device's time goes; with FILE.json after it,\n"
+                 "writes a trace for Perfetto as well")
+        ->check(CLI::Validator(check_profile, ""))
+        ->group(group);
     app.add_flag("--check", options.check, "Reads and checks the scene, renders nothing")
         ->group(group);
     app.add_flag("-q,--quiet", options.quiet, "Warnings and errors only")->group(group);
@@ -265,6 +304,9 @@ void finish_options(Options &options, const RawOptions &raw) {
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
     options.independent = raw.sampler == "independent";
+    options.profile = !raw.profile.empty();
+    if (raw.profile != bare_profile)
+        options.profile_trace = raw.profile;
     options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');
@@ -314,7 +356,7 @@ ParseResult parse_options(int argc, const char *const *argv) {
     const CLI::App *compare = add_compare(app, options.compare);
 
     try {
-        app.parse(argc, argv);
+        app.parse(reversed_arguments(argc, argv));
         options.command = raw.list_devices    ? Command::list_devices
                           : compare->parsed() ? Command::compare
                                               : Command::render;

@@ -42,7 +42,9 @@ struct Options {
     Accel accel = Accel::bvh;
     bool independent = false; ///< --sampler independent
     bool check = false;
-    std::string stats; ///< JSON file, or empty
+    std::string stats;         ///< JSON file, or empty
+    bool profile = false;      ///< print the table
+    std::string profile_trace; ///< JSON file, or empty
     bool quiet = false;
     bool verbose = false;
     std::string kernel_dir; ///< kernel sources to use instead of the embedded ones, or empty

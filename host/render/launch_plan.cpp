@@ -36,14 +36,15 @@ LaunchPlan::LaunchPlan(std::size_t tiles_x, std::size_t tiles_y, int blocks, boo
 
 LaunchPlan::Launch LaunchPlan::next() {
     const int end_block = std::min(first_block_ + batch_, blocks_);
-    const Launch launch{next_item_, std::min(launch_items_, items_[colour_] - next_item_),
-                        first_block_, end_block, colours_[colour_]};
+    Launch launch{next_item_, std::min(launch_items_, items_[colour_] - next_item_), first_block_,
+                  end_block, colours_[colour_]};
     next_item_ += launch.item_count;
     if (next_item_ == items_[colour_]) {
         next_item_ = 0;
         if (++colour_ == colours_.size()) {
             colour_ = 0;
             first_block_ = end_block;
+            launch.ends_pass = true;
         }
     }
     return launch;

@@ -16,6 +16,7 @@ public:
         std::size_t first_item, item_count;
         int first_block, end_block;
         unsigned colour;
+        bool ends_pass = false; ///< the last one of its blocks
     };
 
     /// `tiles_x` x `tiles_y` tiles, `blocks` blocks of samples. `by_colour`: samples reach into

@@ -3,10 +3,13 @@
 #include "device/cl_context.h"
 #include "device/device_scene.h"
 #include "device/kernel_program.h"
+#include "device_peak.h"
 #include "film/film.h"
 #include "flatten/flat_scene.h"
 #include "launch_plan.h"
 #include "log.h"
+#include "profile.h"
+#include "profile_recorder.h"
 
 #include <algorithm>
 #include <chrono>
@@ -31,15 +34,20 @@ constexpr std::size_t gpu_group = 64;
 
 class Stopwatch {
 public:
-    /// Seconds since the last call, or since it was made.
-    double lap() {
+    explicit Stopwatch(Profile *profile) : profile_(profile) {}
+
+    /// Seconds since the last call, or since it was made; the profile, if any, notes the phase.
+    double lap(const char *phase) {
         const auto now = std::chrono::steady_clock::now();
         const double seconds = std::chrono::duration<double>(now - last_).count();
+        if (profile_ != nullptr)
+            profile_->add_phase(phase, last_, now);
         last_ = now;
         return seconds;
     }
 
 private:
+    Profile *profile_;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
@@ -68,15 +76,18 @@ public:
           group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group) {
         with_device("opening the device", [&] {
             context_ = cl::Context(entry.device);
-            queue_ = cl::CommandQueue(context_, entry.device);
+            queue_ = cl::CommandQueue(context_, entry.device,
+                                      options.profile != nullptr ? CL_QUEUE_PROFILING_ENABLE : 0);
         });
     }
 
     void compile(RenderStats &stats);
     void upload(RenderStats &stats);
     /// True if it was stopped.
-    bool render(int spp, RenderStats &stats);
+    bool render(int spp, Stopwatch &watch, RenderStats &stats);
     void read(RenderResult &result, PixelFormat format);
+    /// What is left for the profile, if there is one, after all else.
+    void complete_profile(const RenderStats &stats);
 
 private:
     struct Pending {
@@ -98,6 +109,7 @@ private:
     cl_uint launch_arguments_ = 0;
     std::unique_ptr<DeviceScene> scene_;
     cl::Buffer film_, counters_;
+    std::unique_ptr<ProfileRecorder> recorder_; ///< where a profile is wanted
     double paths_done_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};
 };
@@ -128,9 +140,16 @@ void PathTracer::upload(RenderStats &stats) {
         launch_arguments_ = scene_->bind(kernel_);
         kernel_.setArg(launch_arguments_++, film_);
         kernel_.setArg(launch_arguments_++, counters_);
+        if (options_.profile != nullptr) {
+            recorder_ = std::make_unique<ProfileRecorder>(*options_.profile, context_, queue_,
+                                                          tiles_x_ * tiles_y_);
+            kernel_.setArg(launch_arguments_++, recorder_->buffer());
+        }
         queue_.finish();
     });
     stats.device_bytes = scene_->bytes() + film_bytes + counter_bytes;
+    if (recorder_)
+        stats.device_bytes += recorder_->bytes();
 }
 
 void PathTracer::enqueue(const LaunchPlan::Launch &launch, cl::Event *event) {
@@ -157,6 +176,8 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
     const auto start = std::max(pending.start, last_finish_);
     plan.learn(pending.launch, std::chrono::duration<double>(now - start).count());
     last_finish_ = now;
+    if (recorder_)
+        recorder_->finished(pending.launch, pending.event, pending.start);
 
     // An estimate for the progress bar: tiles at the border are smaller.
     const int first = pending.launch.first_block * CLR_BLOCK_SAMPLES;
@@ -168,13 +189,12 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
         options_.on_progress(paths_done_);
 }
 
-bool PathTracer::render(int spp, RenderStats &stats) {
-    Stopwatch watch;
+bool PathTracer::render(int spp, Stopwatch &watch, RenderStats &stats) {
     // PoCL compiles at the first launch; a launch without work makes that a part of compiling.
     cl::Event event;
     enqueue({0, 0, 0, 0, CLR_ALL_TILES}, &event);
     with_device("compiling the kernel", [&] { event.wait(); });
-    stats.seconds_compile += watch.lap();
+    stats.seconds_compile += watch.lap("compile");
 
     const int blocks = (spp + CLR_BLOCK_SAMPLES - 1) / CLR_BLOCK_SAMPLES;
     const std::size_t least_items =
@@ -188,13 +208,17 @@ bool PathTracer::render(int spp, RenderStats &stats) {
         while (pending.size() < 2 && !plan.done() && !stopped) {
             Pending next{plan.next(), {}, std::chrono::steady_clock::now()};
             enqueue(next.launch, &next.event);
+            if (recorder_)
+                recorder_->enqueued(next.launch);
             pending.push_back(next);
         }
         finish(pending.front(), plan, spp);
         pending.pop_front();
         stopped = stopped || (options_.should_stop && options_.should_stop());
     }
-    stats.seconds_render = watch.lap();
+    if (recorder_)
+        recorder_->complete(spp);
+    stats.seconds_render = watch.lap("render");
     return stopped && !plan.done();
 }
 
@@ -223,12 +247,23 @@ void PathTracer::read(RenderResult &result, PixelFormat format) {
     }
 }
 
+void PathTracer::complete_profile(const RenderStats &stats) {
+    Profile &profile = *options_.profile;
+    profile.device = stats.device;
+    profile.config = flat_.config;
+    profile.uploaded_bytes = static_cast<double>(scene_->bytes());
+    profile.device_bytes = static_cast<double>(stats.device_bytes);
+    profile.downloaded_bytes += static_cast<double>(pixels_ * sizeof(FilmPixel) +
+                                                    tiles_x_ * tiles_y_ * sizeof(ItemCounters));
+    profile.peak = measure_peak(entry_, context_, queue_);
+}
+
 } // namespace
 
 RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     RenderResult result;
     RenderStats &stats = result.stats;
-    Stopwatch watch;
+    Stopwatch watch(options.profile);
     const DeviceEntry entry = choose_device(options.device);
     stats.device = entry.name;
     log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
@@ -242,6 +277,7 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
     flat.config.TILE = entry.is_cpu || flat.config.FILTER == 3 ? cpu_tile : gpu_tile;
     flat.config.SAMPLER = options.independent_sampler ? 1 : 0;
+    flat.config.PROFILE = options.profile != nullptr ? 1 : 0;
     flat.frame.seed = options.seed;
     flat.frame.total_samples = static_cast<uint>(spp);
     stats.lanes = flat.config.LANES;
@@ -250,15 +286,20 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     stats.spp = spp;
     stats.triangles = flat.triangle_count;
     stats.host_bytes = flat.bytes();
-    stats.seconds_build = watch.lap();
+    stats.seconds_build = watch.lap("build");
 
     PathTracer tracer(entry, flat, options);
     tracer.compile(stats);
-    stats.seconds_compile = watch.lap();
+    stats.seconds_compile = watch.lap("compile");
     tracer.upload(stats);
-    stats.seconds_upload = watch.lap();
-    result.interrupted = tracer.render(spp, stats);
+    stats.seconds_upload = watch.lap("upload");
+    result.interrupted = tracer.render(spp, watch, stats);
     tracer.read(result, scene.film.pixel_format);
+    watch.lap("read");
+    if (options.profile != nullptr) {
+        tracer.complete_profile(stats);
+        watch.lap("measure peak");
+    }
     if (stats.nonfinite_samples > 0)
         log::warn(fmt::format("{} samples were not finite and count as black; the first in pixel "
                               "({}, {})",

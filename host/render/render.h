@@ -9,6 +9,8 @@
 
 namespace clrender {
 
+struct Profile;
+
 struct RenderOptions {
     int spp = 0; ///< samples a pixel; 0: the scene's
     std::uint32_t seed = 0;
@@ -21,6 +23,7 @@ struct RenderOptions {
     int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
     int tile = 0;                            ///< work-items in one launch; 0: chosen
     std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
+    Profile *profile = nullptr;              ///< filled where given, with a kernel that counts
     std::function<void(double)> on_progress; ///< paths done; called after each launch
     std::function<bool()> should_stop;       ///< asked after each launch
 };

@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <set>
+
 using namespace clrender::test;
 
 namespace {
@@ -42,9 +44,10 @@ TEST_CASE("The version and the help are printed") {
     const ProgramResult help = run_clrender(folder.path(), {"--help"});
     CHECK(help.exit_code == 0);
     for (const char *option :
-         {"--output", "--device", "--list-devices", "--spp", "--resolution", "--max-depth",
-          "--rr-depth", "--seed", "--lanes", "-D", "--exposure", "--pixel-centers", "--accel",
-          "--check", "--stats", "--quiet", "--verbose", "--version", "compare"})
+         {"--output",    "--device",        "--list-devices", "--spp",     "--resolution",
+          "--max-depth", "--rr-depth",      "--seed",         "--lanes",   "-D",
+          "--exposure",  "--pixel-centers", "--accel",        "--check",   "--stats",
+          "--profile",   "--quiet",         "--verbose",      "--version", "compare"})
         CHECK_THAT(help.out, Catch::Contains(option));
 }
 
@@ -153,6 +156,60 @@ TEST_CASE("The statistics hold every figure of the contract") {
     CHECK(stats.at("memory").at("device_bytes").get<double>() > 0);
     CHECK(stats.at("triangles").is_number_integer());
     CHECK(stats.at("nonfinite_samples") == 0);
+}
+
+TEST_CASE("A profile is printed behind the picture, whatever else is quiet") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    const ProgramResult result =
+        run_clrender(folder.path(), {"-q", "-o", "a.pfm", "--profile", "scene.xml"});
+    CHECK(result.exit_code == 0);
+    CHECK(folder.has("a.pfm"));
+    for (const char *text : {"path_trace", "device s", "million rays", "nodes and", "lanes alive",
+                             "uploaded", "float operations"})
+        CHECK_THAT(result.out, Catch::Contains(text));
+
+    REQUIRE(run_clrender(folder.path(), {"-q", "-o", "b.pfm", "scene.xml"}).exit_code == 0);
+    CHECK(read_file(folder.path() / "a.pfm") == read_file(folder.path() / "b.pfm"));
+}
+
+TEST_CASE("A trace holds the phases and every launch, within the time of the run") {
+    const TempFolder folder;
+    folder.write("scene.xml", small_scene);
+    const ProgramResult result =
+        run_clrender(folder.path(), {"scene.xml", "-o", "a.pfm", "-r", "40x30", "-s", "200",
+                                     "--stats", "s.json", "--profile", "t.json"});
+    REQUIRE(result.exit_code == 0);
+    const auto trace = nlohmann::json::parse(read_file(folder.path() / "t.json"));
+    const auto stats = nlohmann::json::parse(read_file(folder.path() / "s.json"));
+    const double total_us = 1e6 * stats.at("seconds").at("total").get<double>();
+
+    std::set<std::string> names;
+    int kernels = 0;
+    for (const auto &event : trace.at("traceEvents")) {
+        if (event.at("ph") != "X")
+            continue;
+        INFO(event.dump());
+        names.insert(event.at("name").get<std::string>());
+        kernels += event.at("cat") == "kernel" ? 1 : 0;
+        const auto start = event.at("ts").get<double>();
+        const auto duration = event.at("dur").get<double>();
+        CHECK(start >= 0);
+        CHECK(duration >= 0);
+        CHECK(start + duration <= total_us);
+    }
+    for (const char *name : {"parse", "build", "compile", "upload", "render", "read",
+                             "measure peak", "write", "path_trace", "read counters"})
+        CHECK(names.count(name) == 1);
+    CHECK(kernels >= 4); // 200 samples are four blocks
+
+    const auto &sums = trace.at("otherData");
+    const double camera = sums.at("camera_rays"), bounce = sums.at("bounce_rays");
+    const double shadow = sums.at("shadow_rays");
+    CHECK(camera == stats.at("paths").get<double>());
+    CHECK(camera + bounce + shadow == stats.at("rays").get<double>());
+    CHECK(sums.at("peak_flops").get<double>() > 1e6);
+    CHECK(sums.at("peak_bytes_per_second").get<double>() > 1e6);
 }
 
 TEST_CASE("compare: 0 for the same picture, 1 for another, 2 for none") {

@@ -100,6 +100,29 @@ TEST_CASE("The last -D of a name counts, and a value may be empty") {
     CHECK(options.defines == std::map<std::string, std::string>{{"a", "2"}, {"b", ""}});
 }
 
+TEST_CASE("A profile takes the argument behind it only where that is a .json file") {
+    CHECK_FALSE(accept({"scene.xml"}).profile);
+
+    const Options bare = accept({"--profile", "scene.xml"});
+    CHECK(bare.profile);
+    CHECK(bare.profile_trace.empty());
+    CHECK(bare.scene == "scene.xml");
+    CHECK(accept({"scene.xml", "--profile"}).profile);
+    CHECK(accept({"scene.xml", "--profile", "-s", "4"}).spp == 4);
+    CHECK(accept({"scene.xml", "--profile", "--stats=s.json"}).stats == "s.json");
+    CHECK(accept({"--profile", "--", "scene.json"}).scene == "scene.json");
+
+    for (const auto &arguments :
+         std::vector<std::vector<const char *>>{{"--profile", "t.json", "scene.xml"},
+                                                {"scene.xml", "--profile", "t.json"},
+                                                {"scene.xml", "--profile=t.json"}}) {
+        const Options options = accept(arguments);
+        CHECK(options.profile);
+        CHECK(options.profile_trace == "t.json");
+        CHECK(options.scene == "scene.xml");
+    }
+}
+
 TEST_CASE("The other commands") {
     CHECK(accept({"--list-devices"}).command == Command::list_devices);
     const Options compare = accept({"compare", "a.exr", "b.exr", "--tolerance", "1e-3"});
@@ -161,6 +184,9 @@ TEST_CASE("A mistake ends with exit code 2") {
         {"x.xml", "-o", "no/such/folder/a.png"},
         {"x.xml", "-o", "a.png", "-o", "./a.png"},
         {"x.xml", "--stats", "no/such/folder/a.json"},
+        {"x.xml", "--profile=t.txt"},
+        {"x.xml", "--profile", "t.txt"},
+        {"x.xml", "--profile", "no/such/folder/t.json"},
         {"x.xml", "--kernel-dir", "no/such/folder"},
         {"x.xml", "-q", "-v"},
         {"compare"},
