@@ -24,7 +24,7 @@
 
 /* Lanes that have to be idle before new samples are started: starting costs the same for one lane
    as for all. */
-#define REFILL_LANES ((LANES + 1) / 2)
+#define REFILL_LANES ((3 * LANES + 3) / 4)
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
    of the last direction, infinite where the last vertex was specular or the camera, and `prev_n`
