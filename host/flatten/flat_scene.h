@@ -25,6 +25,9 @@ struct Placement {
     }
 };
 
+/// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
+using TriangleCorners = std::array<glm::vec3, 3>;
+
 /// Names follow the kernel's arguments (kernels/scene.clh says what each array holds).
 struct FlatScene {
     FrameData frame{};
@@ -56,7 +59,13 @@ struct FlatScene {
     /// All but LANES and ITEM_PIXELS, which the device decides.
     KernelConfig config;
     std::size_t triangle_count = 0;
+    /// What build_hierarchy() makes `bvh` of.
+    std::vector<TriangleCorners> corners;
+    std::vector<BvhSphere> bvh_spheres;
 
+    [[nodiscard]] bool has_hierarchy() const {
+        return config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
+    }
     [[nodiscard]] std::size_t bytes() const;
 };
 
@@ -67,7 +76,11 @@ struct FlattenOptions {
     int strategy = 0;           ///< as STRATEGY in kernel_config.def
 };
 
-/// Flattens a parsed scene. Warns of degenerate triangles and of scenes without light.
+/// Flattens a parsed scene, all but the hierarchy: what the kernel has to know is known then. Warns
+/// of scenes without light.
 FlatScene flatten(const Scene &scene, const FlattenOptions &options = {});
+
+/// Builds the hierarchy over the triangles and spheres that need one. Warns of degenerate ones.
+void build_hierarchy(FlatScene &flat);
 
 } // namespace clrender

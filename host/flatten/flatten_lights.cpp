@@ -106,7 +106,7 @@ void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, doubl
     const std::size_t count = shape.kind == ShapeKind::mesh ? shape.mesh->triangles.size() : 2;
     const bool by_vertex = !flat.triangles.empty();
     for (std::size_t t = first; t < first + count; ++t) {
-        const TriangleCorners &corner = work.corners[t];
+        const TriangleCorners &corner = flat.corners[t];
         const glm::vec3 e1 = corner[1] - corner[0];
         const glm::vec3 e2 = corner[2] - corner[0];
         LightTriangle triangle{};

@@ -7,9 +7,6 @@
 
 namespace clrender {
 
-/// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
-using TriangleCorners = std::array<glm::vec3, 3>;
-
 /// A flat scene in the making: how the scene's numbers map to the flat one's.
 struct Flattening {
     const Scene &scene;
@@ -20,7 +17,6 @@ struct Flattening {
     std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
     std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
     std::map<int, std::size_t> first_triangle_of_shape{}; ///< by Scene::shapes, meshes
-    std::vector<TriangleCorners> corners{};
     std::size_t vertex_count = 0;
     bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
 };

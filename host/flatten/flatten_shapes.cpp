@@ -116,7 +116,7 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
     const std::size_t third = shape.flip_normals ? 1 : 2;
     const auto first_vertex = static_cast<uint>(work.vertex_count);
     for (const auto &t : mesh.triangles) {
-        work.corners.push_back({positions[t[0]], positions[t[second]], positions[t[third]]});
+        flat.corners.push_back({positions[t[0]], positions[t[second]], positions[t[third]]});
         flat.shape_of.push_back(shape_number);
         if (wanted.normals || wanted.uvs)
             for (const std::size_t corner : {std::size_t{0}, second, third})
@@ -183,7 +183,7 @@ std::vector<std::size_t> order_spheres(const Flattening &work, KernelConfig &con
     return order;
 }
 
-void flatten_spheres(Flattening &work, bool in_bvh, std::vector<BvhSphere> &bvh_spheres) {
+void flatten_spheres(Flattening &work, bool in_bvh) {
     FlatScene &flat = work.flat;
     const std::vector<std::size_t> order = order_spheres(work, flat.config);
     if (in_bvh)
@@ -197,7 +197,7 @@ void flatten_spheres(Flattening &work, bool in_bvh, std::vector<BvhSphere> &bvh_
         if (in_bvh) {
             const auto id = static_cast<uint>(flat.shape_of.size());
             flat.shape_of.push_back(shape_number);
-            bvh_spheres.push_back(
+            flat.bvh_spheres.push_back(
                 {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
             primitive = static_cast<uint>(flat.planars.size()) + id;
         }
@@ -230,14 +230,14 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
     for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
         const Shape &shape = work.scene.shapes[i];
         const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
-        work.first_triangle_of_shape[static_cast<int>(i)] = work.corners.size();
+        work.first_triangle_of_shape[static_cast<int>(i)] = flat.corners.size();
         if (shape.kind == ShapeKind::mesh)
             append_mesh(shape, *shape.mesh, wanted, work);
         else if (shape.kind == ShapeKind::rectangle && rectangles_in_bvh)
             append_mesh(shape, rectangle_mesh(mirrored), wanted, work);
     }
-    flat.triangle_count = work.corners.size();
-    flat.config.HAS_TRIANGLES = work.corners.empty() ? 0 : 1;
+    flat.triangle_count = flat.corners.size();
+    flat.config.HAS_TRIANGLES = flat.corners.empty() ? 0 : 1;
     flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
 }
 
@@ -304,23 +304,28 @@ void flatten_shapes(Flattening &work) {
 
     // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles, and
     // spheres that are too many to test one by one.
-    std::vector<BvhSphere> bvh_spheres;
     if (!spheres_in_bvh)
-        flatten_spheres(work, false, bvh_spheres);
+        flatten_spheres(work, false);
     flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
     flatten_planars(work, rectangles_in_bvh);
     flatten_meshes(work, rectangles_in_bvh);
     flat.frame.prim_bvh_sphere =
-        static_cast<uint>(flat.spheres.size() + flat.planars.size() + work.corners.size());
+        static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
     if (spheres_in_bvh)
-        flatten_spheres(work, true, bvh_spheres);
+        flatten_spheres(work, true);
 
     make_records(flat);
-    flat.config.HAS_BVH_SPHERES = bvh_spheres.empty() ? 0 : 1;
-    if (work.corners.empty() && bvh_spheres.empty())
+    flat.config.HAS_BVH_SPHERES = flat.bvh_spheres.empty() ? 0 : 1;
+    if (flat.has_hierarchy())
+        flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
+}
+
+void build_hierarchy(FlatScene &flat) {
+    if (!flat.has_hierarchy())
         return;
-    flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
-    flat.bvh = build_bvh(work.corners, bvh_spheres);
+    flat.bvh = build_bvh(flat.corners, flat.bvh_spheres);
+    flat.corners = {};
+    flat.bvh_spheres = {};
     flat.frame.triangle_blocks = static_cast<uint>(flat.bvh.triangle_blocks.size());
     flat.frame.sphere_blocks = static_cast<uint>(flat.bvh.sphere_blocks.size());
     if (flat.bvh.degenerate > 0)

@@ -38,6 +38,7 @@ struct RenderStats {
     double seconds_build = 0, seconds_compile = 0, seconds_upload = 0, seconds_render = 0;
     std::string kernel_features;
     bool kernel_cached = false;
+    double seconds_kernel = 0; ///< compiling or fetching it, while the hierarchy was being built
     std::size_t host_bytes = 0, device_bytes = 0;
     std::size_t triangles = 0;
     double nonfinite_samples = 0;
