@@ -4,6 +4,7 @@
 
 #include "bvh_builder.h"
 #include "device/kernel_config.h"
+#include "generality.h"
 #include "scene/scene.h"
 #include "shared/launch_data.h"
 #include "shared/scene_data.h"
@@ -74,6 +75,7 @@ struct FlattenOptions {
     bool brute_force = false;   ///< --accel none
     bool pixel_centers = false; ///< all samples at pixel centres
     int strategy = 0;           ///< as STRATEGY in kernel_config.def
+    Generality generality{};    ///< what the kernel is to be able to do beyond the scene
 };
 
 /// Flattens a parsed scene, all but the hierarchy: what the kernel has to know is known then. Warns

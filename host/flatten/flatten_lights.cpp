@@ -169,10 +169,13 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     if (work.scene.shapes[static_cast<std::size_t>(emitter.shape)].kind == ShapeKind::sphere) {
         // The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
         const uint bvh_sphere = flat.frame.prim_bvh_sphere;
+        const auto lane_wise = static_cast<uint>(flat.config.SPHERE_COUNT);
         const Sphere &sphere =
-            flat.spheres[light.prim < bvh_sphere ? light.prim : light.prim - bvh_sphere];
-        light.shape =
-            light.prim < bvh_sphere ? light.prim : flat.shape_of[light.prim - flat.planars.size()];
+            flat.spheres[light.prim < bvh_sphere ? light.prim
+                                                 : light.prim - bvh_sphere + lane_wise];
+        light.shape = light.prim < bvh_sphere
+                          ? light.prim
+                          : flat.shape_of[light.prim - lane_wise - flat.planars.size()];
         info.kind = light.kind = CLR_LIGHT_SPHERE;
         std::copy_n(sphere.center, 3, light.position);
         std::copy_n(sphere.center, 3, info.center);
@@ -282,6 +285,9 @@ void flatten_lights(Flattening &work) {
     if (work.scene.emitters.empty() && work.scene.integrator.kind != IntegratorKind::depth)
         log::warn("the scene has no light: the picture will be black");
 
+    // A tree needs two lights; those without light are never chosen.
+    while (work.wants("LIGHT_COUNT") && list.size() < 2)
+        list.add({}, {});
     if (flat.config.ENVIRONMENT == 2)
         flat.frame.env_probability = static_cast<float>(environment_share(list.extents, map_power));
     for (const Light &light : list.lights) {

@@ -19,6 +19,9 @@ struct Flattening {
     std::map<int, std::size_t> first_triangle_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
     bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
+
+    /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
+    [[nodiscard]] bool wants(const char *name) const { return options.generality.count(name) != 0; }
 };
 
 /// Where the scene is put, so that what the camera is near to lies within a unit of the origin.
@@ -41,6 +44,9 @@ void flatten_lights(Flattening &work);
 /// probability is left to fill, if it is to be sampled. `power` becomes the integral of its
 /// luminance over all directions.
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power);
+
+/// A constant environment, or none, as a map that light sampling never chooses.
+void make_environment_a_map(FlatScene &flat);
 
 /// Camera, film and the bounds of the bounce loop.
 void flatten_camera(Flattening &work);

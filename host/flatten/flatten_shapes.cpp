@@ -54,6 +54,13 @@ uint append_shape(const Shape &shape, Flattening &work) {
     return static_cast<uint>(flat.shapes.size() - 1);
 }
 
+/// The shape of a sphere without a radius, or a rectangle without a normal, which no ray meets.
+void append_no_shape(FlatScene &flat) {
+    flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
+    if (flat.config.HAS_UVS != 0)
+        flat.shape_frames.insert(flat.shape_frames.end(), 9, 0.0f);
+}
+
 Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
     Sphere s{};
     store(s.center, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
@@ -199,7 +206,8 @@ void flatten_spheres(Flattening &work, bool in_bvh) {
             flat.shape_of.push_back(shape_number);
             flat.bvh_spheres.push_back(
                 {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
-            primitive = static_cast<uint>(flat.planars.size()) + id;
+            primitive = static_cast<uint>(flat.config.SPHERE_COUNT) +
+                        static_cast<uint>(flat.planars.size()) + id;
         }
         work.primitive_of_shape[static_cast<int>(i)] = primitive;
     }
@@ -218,6 +226,10 @@ void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
         if (shape.kind == ShapeKind::disk)
             flat.config.HAS_DISKS = 1;
     }
+    if (work.wants("PLANAR_COUNT") && flat.planars.empty()) {
+        append_no_shape(flat);
+        flat.planars.emplace_back();
+    }
     flat.config.PLANAR_COUNT = static_cast<int>(flat.planars.size());
 }
 
@@ -225,6 +237,7 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
     FlatScene &flat = work.flat;
     VertexData wanted;
     wanted.uvs = flat.config.HAS_UVS != 0;
+    wanted.normals = work.wants("HAS_VERTEX_NORMALS");
     for (const Shape &shape : work.scene.shapes)
         wanted.normals |= shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
     for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
@@ -242,7 +255,8 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
 }
 
 /// What rays test and find of the lane-wise primitives, in their order.
-void make_records(FlatScene &flat) {
+void make_records(Flattening &work) {
+    FlatScene &flat = work.flat;
     const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
     for (std::size_t i = 0; i < 2 * spheres; ++i) {
         const Sphere &s = flat.spheres[i % spheres];
@@ -274,7 +288,7 @@ void make_records(FlatScene &flat) {
         flat.records.push_back(r);
     }
     // Few records lie field by field, filled up with empty ones.
-    if (flat.records.size() <= CLR_TABLE_SIZE) {
+    if (flat.records.size() <= CLR_TABLE_SIZE && !work.wants("RECORD_TABLE")) {
         constexpr std::size_t fields = sizeof(PrimitiveRecord) / sizeof(float);
         std::vector<PrimitiveRecord> table(CLR_TABLE_SIZE);
         auto *to = reinterpret_cast<unsigned char *>(table.data());
@@ -306,6 +320,10 @@ void flatten_shapes(Flattening &work) {
     // spheres that are too many to test one by one.
     if (!spheres_in_bvh)
         flatten_spheres(work, false);
+    if (work.wants("SPHERE_COUNT") && flat.spheres.empty()) {
+        append_no_shape(flat);
+        flat.spheres.emplace_back();
+    }
     flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
     flatten_planars(work, rectangles_in_bvh);
     flatten_meshes(work, rectangles_in_bvh);
@@ -314,7 +332,7 @@ void flatten_shapes(Flattening &work) {
     if (spheres_in_bvh)
         flatten_spheres(work, true);
 
-    make_records(flat);
+    make_records(work);
     flat.config.HAS_BVH_SPHERES = flat.bvh_spheres.empty() ? 0 : 1;
     if (flat.has_hierarchy())
         flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;

@@ -143,13 +143,15 @@ void PathTracer::start_compiling() {
     const std::vector<KernelSource> sources = options_.kernel_dir.empty()
                                                   ? embedded_kernel_sources()
                                                   : read_kernel_sources(options_.kernel_dir);
-    compiling_ =
-        std::async(std::launch::async, [this, text = join_sources(sources, "path_trace.cl"),
-                                        build_options = flat_.config.build_options()] {
-            return build_kernel(
-                context_, entry_, text, "path_trace", build_options,
-                [&](cl::Kernel &kernel) { launch_nothing(context_, queue_, kernel, group_); });
-        });
+    const auto build = [this, text = join_sources(sources, "path_trace.cl"),
+                        build_options = flat_.config.build_options()] {
+        return build_kernel(
+            context_, entry_, text, "path_trace", build_options,
+            [&](cl::Kernel &kernel) { launch_nothing(context_, queue_, kernel, group_); });
+    };
+    // Oclgrind runs kernels on the thread alone that has opened its context.
+    const bool apart = entry_.platform != "Oclgrind";
+    compiling_ = std::async(apart ? std::launch::async : std::launch::deferred, build);
 }
 
 void PathTracer::compile(RenderStats &stats) {
@@ -300,6 +302,7 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     flatten_options.brute_force = options.brute_force;
     flatten_options.pixel_centers = options.pixel_centers;
     flatten_options.strategy = options.strategy;
+    flatten_options.generality = options.generality;
     FlatScene flat = flatten(scene, flatten_options);
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 
 namespace clrender {
@@ -22,6 +23,7 @@ struct RenderOptions {
     int strategy = 0;                        ///< 0 MIS, 1 light sampling only, 2 BSDF sampling only
     int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
     int tile = 0;                            ///< work-items in one launch; 0: chosen
+    std::set<std::string> generality;        ///< as FlattenOptions::generality
     std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
     Profile *profile = nullptr;              ///< filled where given, with a kernel that counts
     std::function<void(double)> on_progress; ///< paths done; called after each launch
