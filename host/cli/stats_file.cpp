@@ -28,6 +28,7 @@ void write_stats(const std::string &path, const RenderStats &stats, const RunTim
         {"rays_per_second", per_second(stats.rays, stats.seconds_render)},
         {"seconds",
          {{"parse", times.parse},
+          {"device", stats.seconds_device},
           {"build", stats.seconds_build},
           {"compile", stats.seconds_compile},
           {"upload", stats.seconds_upload},

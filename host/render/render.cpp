@@ -296,6 +296,7 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     Stopwatch watch(options.profile);
     const DeviceEntry entry = choose_device(options.device);
     stats.device = entry.name;
+    stats.seconds_device = watch.lap("open the device");
     log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
 
     FlattenOptions flatten_options;

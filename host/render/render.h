@@ -37,7 +37,8 @@ struct RenderStats {
     int width = 0, height = 0;
     int spp = 0; ///< samples every pixel has
     double paths = 0, rays = 0;
-    double seconds_build = 0, seconds_compile = 0, seconds_upload = 0, seconds_render = 0;
+    double seconds_device = 0, seconds_build = 0, seconds_compile = 0, seconds_upload = 0,
+           seconds_render = 0;
     std::string kernel_features;
     bool kernel_cached = false;
     double seconds_kernel = 0; ///< compiling or fetching it, while the hierarchy was being built
