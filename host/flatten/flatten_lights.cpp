@@ -285,11 +285,11 @@ void flatten_lights(Flattening &work) {
     if (work.scene.emitters.empty() && work.scene.integrator.kind != IntegratorKind::depth)
         log::warn("the scene has no light: the picture will be black");
 
+    if (flat.config.ENVIRONMENT == 2)
+        flat.frame.env_probability = static_cast<float>(environment_share(list.extents, map_power));
     // A tree needs two lights; those without light are never chosen.
     while (work.wants("LIGHT_COUNT") && list.size() < 2)
         list.add({}, {});
-    if (flat.config.ENVIRONMENT == 2)
-        flat.frame.env_probability = static_cast<float>(environment_share(list.extents, map_power));
     for (const Light &light : list.lights) {
         flat.config.HAS_POINT_LIGHTS |= light.kind == CLR_LIGHT_POINT ? 1 : 0;
         flat.config.HAS_SPHERE_LIGHTS |= light.kind == CLR_LIGHT_SPHERE ? 1 : 0;
