@@ -82,7 +82,7 @@ void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent 
         return;
     glm::dvec3 sum{0.0};
     glm::dvec3 normal[3];
-    for (int c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < 3; ++c) {
         normal[c] = {triangle.normals[3 * c], triangle.normals[3 * c + 1],
                      triangle.normals[3 * c + 2]};
         sum += normal[c];
