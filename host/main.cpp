@@ -66,6 +66,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.independent_sampler = options.independent;
     r.batch = options.batch;
     r.tile = options.tile;
+    r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
     r.profile = options.profile ? &profile : nullptr;
     r.on_progress = [&](double paths) { progress.update(paths); };

@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include "flatten/generality.h"
 #include "image/image.h"
 
 #include <CLI/CLI.hpp>
@@ -175,6 +176,14 @@ std::string check_output(const std::string &path) {
     return check_new_file(path);
 }
 
+std::string check_feature(const std::string &name) {
+    const Generality &known = full_generality();
+    if (name == "all" || known.count(name) != 0)
+        return {};
+    const std::vector<std::string> names(known.begin(), known.end());
+    return fmt::format("'{}' is not all or of {}", name, CLI::detail::join(names, " "));
+}
+
 /// What CLI11 fills as text, because it has to be taken apart afterwards.
 struct RawOptions {
     std::string resolution;
@@ -182,6 +191,7 @@ struct RawOptions {
     std::string accel = "bvh";
     std::string sampler = "sobol";
     std::string profile;
+    std::vector<std::string> generic;
     std::vector<std::string> defines;
     bool list_devices = false;
 };
@@ -260,6 +270,13 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("FOLDER")
         ->check(CLI::Validator(check_folder, ""))
         ->group(group);
+    app.add_option("--generic", raw.generic,
+                   "Compiles the kernel for these features too, comma-separated, or all")
+        ->type_name("NAME")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(check_feature, ""))
+        ->group(group);
     app.add_option("--stats", options.stats, "Writes the figures of the run as JSON")
         ->type_name("FILE.json")
         ->check(CLI::Validator(check_new_file, ""))
@@ -308,6 +325,12 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (raw.profile != bare_profile)
         options.profile_trace = raw.profile;
     options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
+    for (const std::string &name : raw.generic) {
+        if (name == "all")
+            options.generality = full_generality();
+        else
+            options.generality.insert(name);
+    }
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);

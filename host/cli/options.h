@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,9 @@ struct Options {
     bool quiet = false;
     bool verbose = false;
     std::string kernel_dir; ///< kernel sources to use instead of the embedded ones, or empty
-    int batch = 0;          ///< samples of a pixel in one launch; 0: the program chooses
-    int tile = 0;           ///< pixel groups in one launch; 0: the program chooses
+    std::set<std::string> generality; ///< --generic, names of kernel_config.def
+    int batch = 0;                    ///< samples of a pixel in one launch; 0: the program chooses
+    int tile = 0;                     ///< pixel groups in one launch; 0: the program chooses
     CompareOptions compare;
 };
 

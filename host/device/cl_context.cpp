@@ -1,5 +1,7 @@
 #include "cl_context.h"
 
+#include "cache_folder.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -64,6 +66,7 @@ std::string join_names(const std::vector<DeviceEntry> &devices) {
 
 std::vector<DeviceEntry> list_devices() {
     limit_pocl_threads();
+    choose_pocl_cache();
     std::vector<DeviceEntry> entries;
     std::vector<cl::Platform> platforms;
     try {

@@ -1,11 +1,14 @@
 #include "kernel_program.h"
 
+#include "kernel_cache.h"
+#include "log.h"
+
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
+#include <chrono>
 #include <filesystem>
 #include <fmt/core.h>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace clrender {
@@ -14,19 +17,44 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// FNV-1a, 64 bits: names a file, guards nothing.
-std::uint64_t hash_text(const std::string &text, std::uint64_t hash = 0xcbf29ce484222325ull) {
-    for (const unsigned char c : text)
-        hash = (hash ^ c) * 0x100000001b3ull;
-    return hash;
+void append_source(const std::vector<KernelSource> &sources, const std::string &name,
+                   std::set<std::string> &done, std::string &text) {
+    const auto source = std::find_if(sources.begin(), sources.end(),
+                                     [&](const KernelSource &s) { return s.name == name; });
+    if (source == sources.end())
+        throw DeviceError("there is no kernel source " + name);
+    if (!done.insert(name).second)
+        return;
+    const std::string include = "#include \"";
+    text += fmt::format("#line 1 \"{}\"\n", name);
+    std::istringstream lines(source->text);
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+        if (line.compare(0, include.size(), include) != 0) {
+            text += line + '\n';
+            continue;
+        }
+        const std::size_t end = line.find('"', include.size());
+        append_source(sources, line.substr(include.size(), end - include.size()), done, text);
+        text += fmt::format("#line {} \"{}\"\n", number + 1, name);
+    }
 }
 
-fs::path cache_folder() {
-    if (const char *cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0')
-        return fs::path(cache) / "clrender";
-    if (const char *home = std::getenv("HOME"); home != nullptr && *home != '\0')
-        return fs::path(home) / ".cache" / "clrender";
-    return {};
+/// The options that every program is compiled with, and these.
+std::string with_standard(const std::string &options) {
+    return "-cl-std=CL1.2 " + options;
+}
+
+/// The program from its binary; none where the driver does not take it.
+cl::Program take_binary(const cl::Context &context, const cl::Device &device,
+                        const std::vector<unsigned char> &binary, const std::string &options) {
+    try {
+        cl::Program program(context, {device}, {binary});
+        program.build({device}, options.c_str());
+        return program;
+    } catch (const cl::Error &) {
+        return {};
+    }
 }
 
 } // namespace
@@ -50,51 +78,55 @@ std::vector<KernelSource> read_kernel_sources(const std::string &folder) {
     return sources;
 }
 
-cl::Program compile_program(const cl::Context &context, const cl::Device &device,
-                            const std::vector<KernelSource> &sources, const std::string &main,
-                            const std::string &options) {
-    cl::Program program;
-    std::vector<cl::Program> headers;
-    std::vector<cl_program> handles;
-    std::vector<const char *> names;
-    for (const KernelSource &source : sources) {
-        if (source.name == main) {
-            program = cl::Program(context, source.text);
-            continue;
-        }
-        headers.emplace_back(context, source.text);
-        handles.push_back(headers.back()());
-        names.push_back(source.name.c_str());
-    }
-    const std::string all_options = "-cl-std=CL1.2 " + options;
-    const cl_device_id id = device();
-    const cl_int status = clCompileProgram(program(), 1, &id, all_options.c_str(),
-                                           static_cast<cl_uint>(handles.size()), handles.data(),
-                                           names.data(), nullptr, nullptr);
-    if (status != CL_SUCCESS)
-        throw DeviceError(fmt::format("the kernel does not compile (OpenCL error {}):\n{}", status,
-                                      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
-    return with_device("linking the kernel",
-                       [&] { return cl::linkProgram(std::vector<cl::Program>{program}); });
+std::string join_sources(const std::vector<KernelSource> &sources, const std::string &main) {
+    std::set<std::string> done;
+    std::string text;
+    append_source(sources, main, done, text);
+    return text;
 }
 
-bool was_compiled_before(const DeviceEntry &entry, const std::vector<KernelSource> &sources,
-                         const std::string &options) {
-    std::uint64_t hash = hash_text(options);
-    hash = hash_text(entry.name + entry.platform + entry.version, hash);
-    hash = hash_text(entry.device.getInfo<CL_DRIVER_VERSION>(), hash);
-    for (const KernelSource &source : sources)
-        hash = hash_text(source.name + source.text, hash);
-    const fs::path folder = cache_folder();
-    if (folder.empty())
-        return false;
-    const fs::path marker = folder / "kernels" / fmt::format("{:016x}", hash);
-    std::error_code error;
-    if (fs::exists(marker, error))
-        return true;
-    fs::create_directories(marker.parent_path(), error);
-    std::ofstream(marker) << options << '\n';
-    return false;
+cl::Program compile_program(const cl::Context &context, const cl::Device &device,
+                            const std::string &text, const std::string &options) {
+    cl::Program program(context, text);
+    try {
+        program.build({device}, with_standard(options).c_str());
+    } catch (const cl::Error &e) {
+        throw DeviceError(fmt::format("the kernel does not compile (OpenCL error {}):\n{}", e.err(),
+                                      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
+    }
+    return program;
+}
+
+BuiltKernel build_kernel(const cl::Context &context, const DeviceEntry &entry,
+                         const std::string &text, const std::string &name,
+                         const std::string &options,
+                         const std::function<void(cl::Kernel &)> &launch) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string all_options = with_standard(options);
+    KernelCache cache(entry, text, all_options);
+    BuiltKernel built;
+    built.cached = cache.look_up();
+    std::string reason = cache.why_not();
+    cl::Program program;
+    if (!cache.binary().empty()) {
+        program = take_binary(context, entry.device, cache.binary(), all_options);
+        if (program() == nullptr) {
+            built.cached = false;
+            reason = "the driver does not take the cached one";
+        }
+    }
+    log::detail(built.cached ? "kernel: from the cache" : "kernel: compiling, " + reason);
+    if (program() == nullptr)
+        program = compile_program(context, entry.device, text, options);
+    with_device("compiling the kernel", [&] {
+        built.kernel = cl::Kernel(program, name.c_str());
+        launch(built.kernel);
+        if (!built.cached)
+            cache.store(program);
+    });
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    built.seconds = took.count();
+    return built;
 }
 
 } // namespace clrender

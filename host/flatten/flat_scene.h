@@ -4,6 +4,7 @@
 
 #include "bvh_builder.h"
 #include "device/kernel_config.h"
+#include "generality.h"
 #include "scene/scene.h"
 #include "shared/launch_data.h"
 #include "shared/scene_data.h"
@@ -24,6 +25,9 @@ struct Placement {
         return glm::vec3((p - center) * scale);
     }
 };
+
+/// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
+using TriangleCorners = std::array<glm::vec3, 3>;
 
 /// Names follow the kernel's arguments (kernels/scene.clh says what each array holds).
 struct FlatScene {
@@ -56,7 +60,13 @@ struct FlatScene {
     /// All but LANES and ITEM_PIXELS, which the device decides.
     KernelConfig config;
     std::size_t triangle_count = 0;
+    /// What build_hierarchy() makes `bvh` of.
+    std::vector<TriangleCorners> corners;
+    std::vector<BvhSphere> bvh_spheres;
 
+    [[nodiscard]] bool has_hierarchy() const {
+        return config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
+    }
     [[nodiscard]] std::size_t bytes() const;
 };
 
@@ -65,9 +75,14 @@ struct FlattenOptions {
     bool brute_force = false;   ///< --accel none
     bool pixel_centers = false; ///< all samples at pixel centres
     int strategy = 0;           ///< as STRATEGY in kernel_config.def
+    Generality generality{};    ///< what the kernel is to be able to do beyond the scene
 };
 
-/// Flattens a parsed scene. Warns of degenerate triangles and of scenes without light.
+/// Flattens a parsed scene, all but the hierarchy: what the kernel has to know is known then. Warns
+/// of scenes without light.
 FlatScene flatten(const Scene &scene, const FlattenOptions &options = {});
+
+/// Builds the hierarchy over the triangles and spheres that need one. Warns of degenerate ones.
+void build_hierarchy(FlatScene &flat);
 
 } // namespace clrender

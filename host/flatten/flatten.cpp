@@ -23,9 +23,12 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
             float ignored[3];
             flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
         }
+    if (work.wants("HAS_UVS"))
+        work.flat.config.HAS_UVS = 1;
     flatten_shapes(work);
     flatten_lights(work);
     flatten_camera(work);
+    apply_generality(options.generality, work.flat);
     return std::move(work.flat);
 }
 

@@ -128,4 +128,24 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
     flat.config.ENVIRONMENT = *power > 0 ? 2 : 1;
 }
 
+void make_environment_a_map(FlatScene &flat) {
+    // Where light sampling alone counts, a map and a constant environment mean different things.
+    if (flat.config.ENVIRONMENT == 2 || flat.config.STRATEGY == 1)
+        return;
+    FrameData &f = flat.frame;
+    constexpr std::size_t side = 2;
+    flat.env_texels.clear();
+    for (std::size_t i = 0; i < 3 * side * side; ++i)
+        flat.env_texels.push_back(flat.config.ENVIRONMENT == 1 ? f.env_radiance[i % 3] : 0.0f);
+    flat.env_cdf.clear();
+    flat.env_guide.clear();
+    const std::vector<double> even(side, 1.0);
+    append_distribution(std::span(even).first(side - 1), flat.env_cdf, flat.env_guide);
+    append_distribution(even, flat.env_cdf, flat.env_guide);
+    f.env_width = f.env_height = side;
+    f.env_probability = 0;
+    f.env_rotation[0] = f.env_rotation[5] = f.env_rotation[10] = 1;
+    flat.config.ENVIRONMENT = 2;
+}
+
 } // namespace clrender

@@ -82,7 +82,7 @@ void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent 
         return;
     glm::dvec3 sum{0.0};
     glm::dvec3 normal[3];
-    for (int c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < 3; ++c) {
         normal[c] = {triangle.normals[3 * c], triangle.normals[3 * c + 1],
                      triangle.normals[3 * c + 2]};
         sum += normal[c];
@@ -106,7 +106,7 @@ void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, doubl
     const std::size_t count = shape.kind == ShapeKind::mesh ? shape.mesh->triangles.size() : 2;
     const bool by_vertex = !flat.triangles.empty();
     for (std::size_t t = first; t < first + count; ++t) {
-        const TriangleCorners &corner = work.corners[t];
+        const TriangleCorners &corner = flat.corners[t];
         const glm::vec3 e1 = corner[1] - corner[0];
         const glm::vec3 e2 = corner[2] - corner[0];
         LightTriangle triangle{};
@@ -169,10 +169,13 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     if (work.scene.shapes[static_cast<std::size_t>(emitter.shape)].kind == ShapeKind::sphere) {
         // The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
         const uint bvh_sphere = flat.frame.prim_bvh_sphere;
+        const auto lane_wise = static_cast<uint>(flat.config.SPHERE_COUNT);
         const Sphere &sphere =
-            flat.spheres[light.prim < bvh_sphere ? light.prim : light.prim - bvh_sphere];
-        light.shape =
-            light.prim < bvh_sphere ? light.prim : flat.shape_of[light.prim - flat.planars.size()];
+            flat.spheres[light.prim < bvh_sphere ? light.prim
+                                                 : light.prim - bvh_sphere + lane_wise];
+        light.shape = light.prim < bvh_sphere
+                          ? light.prim
+                          : flat.shape_of[light.prim - lane_wise - flat.planars.size()];
         info.kind = light.kind = CLR_LIGHT_SPHERE;
         std::copy_n(sphere.center, 3, light.position);
         std::copy_n(sphere.center, 3, info.center);
@@ -284,6 +287,9 @@ void flatten_lights(Flattening &work) {
 
     if (flat.config.ENVIRONMENT == 2)
         flat.frame.env_probability = static_cast<float>(environment_share(list.extents, map_power));
+    // A tree needs two lights; those without light are never chosen.
+    while (work.wants("LIGHT_COUNT") && list.size() < 2)
+        list.add({}, {});
     for (const Light &light : list.lights) {
         flat.config.HAS_POINT_LIGHTS |= light.kind == CLR_LIGHT_POINT ? 1 : 0;
         flat.config.HAS_SPHERE_LIGHTS |= light.kind == CLR_LIGHT_SPHERE ? 1 : 0;

@@ -7,9 +7,6 @@
 
 namespace clrender {
 
-/// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
-using TriangleCorners = std::array<glm::vec3, 3>;
-
 /// A flat scene in the making: how the scene's numbers map to the flat one's.
 struct Flattening {
     const Scene &scene;
@@ -20,9 +17,11 @@ struct Flattening {
     std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
     std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
     std::map<int, std::size_t> first_triangle_of_shape{}; ///< by Scene::shapes, meshes
-    std::vector<TriangleCorners> corners{};
     std::size_t vertex_count = 0;
     bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
+
+    /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
+    [[nodiscard]] bool wants(const char *name) const { return options.generality.count(name) != 0; }
 };
 
 /// Where the scene is put, so that what the camera is near to lies within a unit of the origin.
@@ -45,6 +44,9 @@ void flatten_lights(Flattening &work);
 /// probability is left to fill, if it is to be sampled. `power` becomes the integral of its
 /// luminance over all directions.
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power);
+
+/// A constant environment, or none, as a map that light sampling never chooses.
+void make_environment_a_map(FlatScene &flat);
 
 /// Camera, film and the bounds of the bounce loop.
 void flatten_camera(Flattening &work);

@@ -54,6 +54,13 @@ uint append_shape(const Shape &shape, Flattening &work) {
     return static_cast<uint>(flat.shapes.size() - 1);
 }
 
+/// The shape of a sphere without a radius, or a rectangle without a normal, which no ray meets.
+void append_no_shape(FlatScene &flat) {
+    flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
+    if (flat.config.HAS_UVS != 0)
+        flat.shape_frames.insert(flat.shape_frames.end(), 9, 0.0f);
+}
+
 Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
     Sphere s{};
     store(s.center, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
@@ -116,7 +123,7 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
     const std::size_t third = shape.flip_normals ? 1 : 2;
     const auto first_vertex = static_cast<uint>(work.vertex_count);
     for (const auto &t : mesh.triangles) {
-        work.corners.push_back({positions[t[0]], positions[t[second]], positions[t[third]]});
+        flat.corners.push_back({positions[t[0]], positions[t[second]], positions[t[third]]});
         flat.shape_of.push_back(shape_number);
         if (wanted.normals || wanted.uvs)
             for (const std::size_t corner : {std::size_t{0}, second, third})
@@ -183,7 +190,7 @@ std::vector<std::size_t> order_spheres(const Flattening &work, KernelConfig &con
     return order;
 }
 
-void flatten_spheres(Flattening &work, bool in_bvh, std::vector<BvhSphere> &bvh_spheres) {
+void flatten_spheres(Flattening &work, bool in_bvh) {
     FlatScene &flat = work.flat;
     const std::vector<std::size_t> order = order_spheres(work, flat.config);
     if (in_bvh)
@@ -197,9 +204,10 @@ void flatten_spheres(Flattening &work, bool in_bvh, std::vector<BvhSphere> &bvh_
         if (in_bvh) {
             const auto id = static_cast<uint>(flat.shape_of.size());
             flat.shape_of.push_back(shape_number);
-            bvh_spheres.push_back(
+            flat.bvh_spheres.push_back(
                 {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
-            primitive = static_cast<uint>(flat.planars.size()) + id;
+            primitive = static_cast<uint>(flat.config.SPHERE_COUNT) +
+                        static_cast<uint>(flat.planars.size()) + id;
         }
         work.primitive_of_shape[static_cast<int>(i)] = primitive;
     }
@@ -218,6 +226,10 @@ void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
         if (shape.kind == ShapeKind::disk)
             flat.config.HAS_DISKS = 1;
     }
+    if (work.wants("PLANAR_COUNT") && flat.planars.empty()) {
+        append_no_shape(flat);
+        flat.planars.emplace_back();
+    }
     flat.config.PLANAR_COUNT = static_cast<int>(flat.planars.size());
 }
 
@@ -225,24 +237,26 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
     FlatScene &flat = work.flat;
     VertexData wanted;
     wanted.uvs = flat.config.HAS_UVS != 0;
+    wanted.normals = work.wants("HAS_VERTEX_NORMALS");
     for (const Shape &shape : work.scene.shapes)
         wanted.normals |= shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
     for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
         const Shape &shape = work.scene.shapes[i];
         const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
-        work.first_triangle_of_shape[static_cast<int>(i)] = work.corners.size();
+        work.first_triangle_of_shape[static_cast<int>(i)] = flat.corners.size();
         if (shape.kind == ShapeKind::mesh)
             append_mesh(shape, *shape.mesh, wanted, work);
         else if (shape.kind == ShapeKind::rectangle && rectangles_in_bvh)
             append_mesh(shape, rectangle_mesh(mirrored), wanted, work);
     }
-    flat.triangle_count = work.corners.size();
-    flat.config.HAS_TRIANGLES = work.corners.empty() ? 0 : 1;
+    flat.triangle_count = flat.corners.size();
+    flat.config.HAS_TRIANGLES = flat.corners.empty() ? 0 : 1;
     flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
 }
 
 /// What rays test and find of the lane-wise primitives, in their order.
-void make_records(FlatScene &flat) {
+void make_records(Flattening &work) {
+    FlatScene &flat = work.flat;
     const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
     for (std::size_t i = 0; i < 2 * spheres; ++i) {
         const Sphere &s = flat.spheres[i % spheres];
@@ -274,7 +288,7 @@ void make_records(FlatScene &flat) {
         flat.records.push_back(r);
     }
     // Few records lie field by field, filled up with empty ones.
-    if (flat.records.size() <= CLR_TABLE_SIZE) {
+    if (flat.records.size() <= CLR_TABLE_SIZE && !work.wants("RECORD_TABLE")) {
         constexpr std::size_t fields = sizeof(PrimitiveRecord) / sizeof(float);
         std::vector<PrimitiveRecord> table(CLR_TABLE_SIZE);
         auto *to = reinterpret_cast<unsigned char *>(table.data());
@@ -304,23 +318,32 @@ void flatten_shapes(Flattening &work) {
 
     // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles, and
     // spheres that are too many to test one by one.
-    std::vector<BvhSphere> bvh_spheres;
     if (!spheres_in_bvh)
-        flatten_spheres(work, false, bvh_spheres);
+        flatten_spheres(work, false);
+    if (work.wants("SPHERE_COUNT") && flat.spheres.empty()) {
+        append_no_shape(flat);
+        flat.spheres.emplace_back();
+    }
     flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
     flatten_planars(work, rectangles_in_bvh);
     flatten_meshes(work, rectangles_in_bvh);
     flat.frame.prim_bvh_sphere =
-        static_cast<uint>(flat.spheres.size() + flat.planars.size() + work.corners.size());
+        static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
     if (spheres_in_bvh)
-        flatten_spheres(work, true, bvh_spheres);
+        flatten_spheres(work, true);
 
-    make_records(flat);
-    flat.config.HAS_BVH_SPHERES = bvh_spheres.empty() ? 0 : 1;
-    if (work.corners.empty() && bvh_spheres.empty())
+    make_records(work);
+    flat.config.HAS_BVH_SPHERES = flat.bvh_spheres.empty() ? 0 : 1;
+    if (flat.has_hierarchy())
+        flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
+}
+
+void build_hierarchy(FlatScene &flat) {
+    if (!flat.has_hierarchy())
         return;
-    flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
-    flat.bvh = build_bvh(work.corners, bvh_spheres);
+    flat.bvh = build_bvh(flat.corners, flat.bvh_spheres);
+    flat.corners = {};
+    flat.bvh_spheres = {};
     flat.frame.triangle_blocks = static_cast<uint>(flat.bvh.triangle_blocks.size());
     flat.frame.sphere_blocks = static_cast<uint>(flat.bvh.sphere_blocks.size());
     if (flat.bvh.degenerate > 0)

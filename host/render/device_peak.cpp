@@ -95,9 +95,9 @@ DevicePeak measure_peak(const DeviceEntry &entry, const cl::Context &context,
                         const cl::CommandQueue &queue) {
     return with_device("measuring the device's peak", [&] {
         const int lanes = natural_lanes(entry);
-        const cl::Program program =
-            compile_program(context, entry.device, embedded_kernel_sources(), "peak.cl",
-                            fmt::format("-DLANES={}", lanes));
+        const cl::Program program = compile_program(
+            context, entry.device, join_sources(embedded_kernel_sources(), "peak.cl"),
+            fmt::format("-DLANES={}", lanes));
         const Shape shape = full_shape(entry);
         const cl::Buffer sums(context, CL_MEM_READ_WRITE, shape.items * sizeof(float));
         DevicePeak peak;

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <deque>
 #include <fmt/core.h>
+#include <future>
 #include <memory>
 #include <numeric>
 
@@ -31,6 +32,9 @@ constexpr int gpu_tile = 1;
 /// Work-items of a work-group, fixed: PoCL compiles anew for each size.
 constexpr std::size_t cpu_group = 1;
 constexpr std::size_t gpu_group = 64;
+
+/// Arguments of the kernel that are numbers, the last ones; the rest are buffers.
+constexpr cl_uint launch_numbers = 6;
 
 class Stopwatch {
 public:
@@ -81,6 +85,9 @@ public:
         });
     }
 
+    /// Starts to compile, on a thread of its own.
+    void start_compiling();
+    /// Waits for the kernel.
     void compile(RenderStats &stats);
     void upload(RenderStats &stats);
     /// True if it was stopped.
@@ -105,6 +112,7 @@ private:
     std::size_t pixels_, tile_, tiles_x_, tiles_y_, group_;
     cl::Context context_;
     cl::CommandQueue queue_;
+    std::future<BuiltKernel> compiling_;
     cl::Kernel kernel_;
     cl_uint launch_arguments_ = 0;
     std::unique_ptr<DeviceScene> scene_;
@@ -114,17 +122,45 @@ private:
     std::chrono::steady_clock::time_point last_finish_{};
 };
 
-void PathTracer::compile(RenderStats &stats) {
+/// Runs the kernel without any work: no buffer is looked at.
+void launch_nothing(const cl::Context &context, const cl::CommandQueue &queue, cl::Kernel &kernel,
+                    std::size_t group) {
+    const cl::Buffer nothing(context, CL_MEM_READ_WRITE, sizeof(FrameData));
+    const auto arguments = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+    for (cl_uint i = 0; i < arguments; ++i) {
+        if (i + launch_numbers < arguments)
+            kernel.setArg(i, nothing);
+        else
+            kernel.setArg(i, cl_uint{0});
+    }
+    cl::Event event;
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(group), cl::NDRange(group),
+                               nullptr, &event);
+    event.wait();
+}
+
+void PathTracer::start_compiling() {
     const std::vector<KernelSource> sources = options_.kernel_dir.empty()
                                                   ? embedded_kernel_sources()
                                                   : read_kernel_sources(options_.kernel_dir);
-    const std::string build_options = flat_.config.build_options();
+    const auto build = [this, text = join_sources(sources, "path_trace.cl"),
+                        build_options = flat_.config.build_options()] {
+        return build_kernel(
+            context_, entry_, text, "path_trace", build_options,
+            [&](cl::Kernel &kernel) { launch_nothing(context_, queue_, kernel, group_); });
+    };
+    // Oclgrind runs kernels on the thread alone that has opened its context.
+    const bool apart = entry_.platform != "Oclgrind";
+    compiling_ = std::async(apart ? std::launch::async : std::launch::deferred, build);
+}
+
+void PathTracer::compile(RenderStats &stats) {
     stats.kernel_features = flat_.config.describe();
-    stats.kernel_cached = was_compiled_before(entry_, sources, build_options);
     log::detail("kernel: " + stats.kernel_features);
-    const cl::Program program =
-        compile_program(context_, entry_.device, sources, "path_trace.cl", build_options);
-    kernel_ = with_device("creating the kernel", [&] { return cl::Kernel(program, "path_trace"); });
+    const BuiltKernel built = compiling_.get();
+    kernel_ = built.kernel;
+    stats.kernel_cached = built.cached;
+    stats.seconds_kernel = built.seconds;
 }
 
 void PathTracer::upload(RenderStats &stats) {
@@ -190,12 +226,6 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
 }
 
 bool PathTracer::render(int spp, Stopwatch &watch, RenderStats &stats) {
-    // PoCL compiles at the first launch; a launch without work makes that a part of compiling.
-    cl::Event event;
-    enqueue({0, 0, 0, 0, CLR_ALL_TILES}, &event);
-    with_device("compiling the kernel", [&] { event.wait(); });
-    stats.seconds_compile += watch.lap("compile");
-
     const int blocks = (spp + CLR_BLOCK_SAMPLES - 1) / CLR_BLOCK_SAMPLES;
     const std::size_t least_items =
         round_up(static_cast<std::size_t>(entry_.compute_units) * 4, group_);
@@ -266,12 +296,14 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     Stopwatch watch(options.profile);
     const DeviceEntry entry = choose_device(options.device);
     stats.device = entry.name;
+    stats.seconds_device = watch.lap("open the device");
     log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
 
     FlattenOptions flatten_options;
     flatten_options.brute_force = options.brute_force;
     flatten_options.pixel_centers = options.pixel_centers;
     flatten_options.strategy = options.strategy;
+    flatten_options.generality = options.generality;
     FlatScene flat = flatten(scene, flatten_options);
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
@@ -285,10 +317,13 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     stats.height = static_cast<int>(flat.frame.height);
     stats.spp = spp;
     stats.triangles = flat.triangle_count;
+
+    // The kernel is compiled while the hierarchy is being built.
+    PathTracer tracer(entry, flat, options);
+    tracer.start_compiling();
+    build_hierarchy(flat);
     stats.host_bytes = flat.bytes();
     stats.seconds_build = watch.lap("build");
-
-    PathTracer tracer(entry, flat, options);
     tracer.compile(stats);
     stats.seconds_compile = watch.lap("compile");
     tracer.upload(stats);

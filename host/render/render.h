@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 
 namespace clrender {
@@ -22,6 +23,7 @@ struct RenderOptions {
     int strategy = 0;                        ///< 0 MIS, 1 light sampling only, 2 BSDF sampling only
     int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
     int tile = 0;                            ///< work-items in one launch; 0: chosen
+    std::set<std::string> generality;        ///< as FlattenOptions::generality
     std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
     Profile *profile = nullptr;              ///< filled where given, with a kernel that counts
     std::function<void(double)> on_progress; ///< paths done; called after each launch
@@ -35,9 +37,11 @@ struct RenderStats {
     int width = 0, height = 0;
     int spp = 0; ///< samples every pixel has
     double paths = 0, rays = 0;
-    double seconds_build = 0, seconds_compile = 0, seconds_upload = 0, seconds_render = 0;
+    double seconds_device = 0, seconds_build = 0, seconds_compile = 0, seconds_upload = 0,
+           seconds_render = 0;
     std::string kernel_features;
     bool kernel_cached = false;
+    double seconds_kernel = 0; ///< compiling or fetching it, while the hierarchy was being built
     std::size_t host_bytes = 0, device_bytes = 0;
     std::size_t triangles = 0;
     double nonfinite_samples = 0;

@@ -2,7 +2,7 @@
 #define CLR_LAUNCH_DATA_H
 /* What changes from launch to launch, and what a launch gives back. */
 
-#include "shared_types.h"
+#include "shared/shared_types.h"
 
 CLR_SHARED_BEGIN
 

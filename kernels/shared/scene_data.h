@@ -3,8 +3,8 @@
 /* The scene as it lies in device memory. Lengths are in the renderer's own units: recentred, and
    scaled by a power of two. Colours are linear sRGB. */
 
+#include "shared/shared_types.h"
 #include "shared/table_size.h"
-#include "shared_types.h"
 
 CLR_SHARED_BEGIN
 

@@ -123,6 +123,14 @@ TEST_CASE("A profile takes the argument behind it only where that is a .json fil
     }
 }
 
+TEST_CASE("Features that the kernel gets though the scene does not need them") {
+    CHECK(accept({"scene.xml"}).generality.empty());
+    CHECK(
+        accept({"scene.xml", "--generic", "HAS_LENS,HAS_CLIP", "--generic=HAS_ALPHA"}).generality ==
+        std::set<std::string>{"HAS_ALPHA", "HAS_CLIP", "HAS_LENS"});
+    CHECK(accept({"scene.xml", "--generic", "all"}).generality.count("LIGHT_COUNT") == 1);
+}
+
 TEST_CASE("The other commands") {
     CHECK(accept({"--list-devices"}).command == Command::list_devices);
     const Options compare = accept({"compare", "a.exr", "b.exr", "--tolerance", "1e-3"});
@@ -188,6 +196,9 @@ TEST_CASE("A mistake ends with exit code 2") {
         {"x.xml", "--profile", "t.txt"},
         {"x.xml", "--profile", "no/such/folder/t.json"},
         {"x.xml", "--kernel-dir", "no/such/folder"},
+        {"x.xml", "--generic", ""},
+        {"x.xml", "--generic", "HAS_NOTHING"},
+        {"x.xml", "--generic", "LANES"},
         {"x.xml", "-q", "-v"},
         {"compare"},
         {"compare", "a.exr"},

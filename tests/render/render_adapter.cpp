@@ -16,6 +16,7 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.lanes = how.lanes;
     options.pixel_centers = how.pixel_centers;
     options.independent_sampler = !how.sobol;
+    options.generality = how.generality;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;
     RenderResult result = render_scene(scene, options);

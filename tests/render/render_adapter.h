@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 
 namespace clrender::test {
@@ -16,9 +17,10 @@ struct TestRender {
     std::uint32_t seed = 1;
     int lanes = 0; ///< 0: as wide as the device
     bool pixel_centers = false;
-    int batch_blocks = 0; ///< as in RenderOptions
-    int tile_items = 0;   ///< as in RenderOptions
-    bool sobol = false;   ///< independent samples, whose variance is what it looks like, if not
+    int batch_blocks = 0;                  ///< as in RenderOptions
+    int tile_items = 0;                    ///< as in RenderOptions
+    std::set<std::string> generality = {}; ///< as in RenderOptions
+    bool sobol = false; ///< independent samples, whose variance is what it looks like, if not
 };
 
 /// Renders on the machine's default device.

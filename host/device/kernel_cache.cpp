@@ -1,0 +1,159 @@
+#include "kernel_cache.h"
+
+#include "cache_folder.h"
+
+#include <cstdint>
+#include <fmt/core.h>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <unistd.h>
+
+namespace clrender {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// FNV-1a, 64 bits: finds changes and damage, guards against nobody.
+std::uint64_t hash_of(const std::string &text) {
+    std::uint64_t hash = 0xcbf29ce484222325ull;
+    for (const char c : text)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+    return hash;
+}
+
+std::optional<std::string> read_file(const fs::path &path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return std::nullopt;
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+/// Other runs see all of a file or nothing: it gets its name when it is complete.
+void write_file(const fs::path &path, const std::string &content) {
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    const fs::path unfinished = path.string() + "." + std::to_string(getpid());
+    std::ofstream file(unfinished, std::ios::binary);
+    file << content;
+    file.close();
+    if (file)
+        fs::rename(unfinished, path, error);
+    else
+        fs::remove(unfinished, error);
+}
+
+/// PoCL's folders of programs that it has used since `start`: it touches a file in each.
+std::vector<fs::path> pocl_programs_since(fs::file_time_type start) {
+    std::vector<fs::path> programs;
+    std::error_code error;
+    for (const fs::directory_entry &group : fs::directory_iterator(pocl_cache(), error))
+        for (const fs::directory_entry &program : fs::directory_iterator(group.path(), error)) {
+            const auto used = fs::last_write_time(program.path() / "last_accessed", error);
+            if (!error && used >= start)
+                programs.push_back(program.path());
+        }
+    return programs;
+}
+
+/// A line for each file of the programs: hash and path below PoCL's cache.
+std::string describe_pocl_files(const std::vector<fs::path> &programs) {
+    std::string lines;
+    std::error_code error;
+    for (const fs::path &program : programs)
+        for (const fs::directory_entry &file : fs::recursive_directory_iterator(program, error)) {
+            const auto content = file.is_regular_file() ? read_file(file.path()) : std::nullopt;
+            if (content && !content->empty())
+                lines += fmt::format("{:016x} {}\n", hash_of(*content),
+                                     fs::relative(file.path(), pocl_cache(), error).string());
+        }
+    return lines;
+}
+
+/// Whether PoCL still has these files as they were; removes the programs of those that it has not.
+bool pocl_files_are_sound(const std::string &lines) {
+    std::istringstream stream(lines);
+    std::string hash;
+    fs::path name;
+    bool sound = true;
+    while (stream >> hash >> name) {
+        const auto content = read_file(pocl_cache() / name);
+        if (content && fmt::format("{:016x}", hash_of(*content)) == hash)
+            continue;
+        sound = false;
+        auto part = name.begin();
+        std::error_code error;
+        fs::remove_all(pocl_cache() / *part / *std::next(part), error);
+    }
+    return sound;
+}
+
+} // namespace
+
+KernelCache::KernelCache(const DeviceEntry &entry, const std::string &text,
+                         const std::string &options)
+    : driver_keeps_kernels_(entry.platform == "Portable Computing Language"),
+      // Oclgrind has compiler options of its own, in its environment.
+      enabled_(entry.platform != "Oclgrind" && !cache_folder().empty()),
+      // File systems may round times down to whole seconds.
+      start_(fs::file_time_type::clock::now() - std::chrono::seconds(1)) {
+    const std::string driver = entry.version + entry.device.getInfo<CL_DRIVER_VERSION>();
+    file_ = cache_folder() / "kernels" /
+            fmt::format("{:016x}", hash_of(entry.name + entry.platform + options));
+    identity_ = fmt::format("driver {:016x}\nsources {:016x}\n", hash_of(driver), hash_of(text));
+}
+
+/// The rest of the entry, if it is whole and was made from the same; else empty.
+std::string KernelCache::read_payload() {
+    const auto content = enabled_ ? read_file(file_) : std::nullopt;
+    if (!content) {
+        why_not_ = "it is not in the cache";
+        return {};
+    }
+    const std::size_t line = identity_.find('\n');
+    if (content->compare(0, line, identity_, 0, line) != 0) {
+        why_not_ = "the driver has changed";
+        return {};
+    }
+    if (content->compare(0, identity_.size(), identity_) != 0) {
+        why_not_ = "the sources have changed";
+        return {};
+    }
+    why_not_ = "the cached one is gone or damaged";
+    const std::size_t end = content->find('\n', identity_.size());
+    if (end == std::string::npos)
+        return {};
+    const std::string payload = content->substr(end + 1);
+    const std::string check = content->substr(identity_.size(), end - identity_.size());
+    return check == fmt::format("{:016x}", hash_of(payload)) ? payload : std::string();
+}
+
+bool KernelCache::look_up() {
+    const std::string payload = read_payload();
+    if (payload.empty())
+        return false;
+    if (driver_keeps_kernels_)
+        return pocl_files_are_sound(payload);
+    binary_.assign(payload.begin(), payload.end());
+    return true;
+}
+
+void KernelCache::store(const cl::Program &program) const {
+    if (!enabled_)
+        return;
+    std::string payload;
+    if (driver_keeps_kernels_) {
+        payload = describe_pocl_files(pocl_programs_since(start_));
+    } else {
+        const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+        if (!binaries.empty())
+            payload.assign(binaries.front().begin(), binaries.front().end());
+    }
+    if (!payload.empty())
+        write_file(file_, identity_ + fmt::format("{:016x}\n", hash_of(payload)) + payload);
+}
+
+} // namespace clrender
