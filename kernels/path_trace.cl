@@ -375,7 +375,10 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
     mask_l final = no_lanes();
 #if FINAL_BY_LIGHTS
-    final = diffuse & ige(p->depth, int_of(f->max_depth - 2));
+    /* Close to the light, where it looks large, the ray that could meet it is worth tracing. */
+    vec3 to_light = v3_sub(v3_of(f->sole_light[0], f->sole_light[1], f->sole_light[2]), surface.p);
+    final = diffuse & ige(p->depth, int_of(f->max_depth - 2)) &
+            gt(v3_dot(to_light, to_light), real_of(f->sole_light[3]));
 #endif
     if (any_lane(diffuse))
         paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, numbers, final, diffuse);

@@ -85,12 +85,12 @@ void flatten_integrator(Flattening &work) {
             flat.config.STRATEGY = 2;
     }
     // The last ray of a path would only bring what multiple importance sampling expects of it:
-    // light. After some bounces all of it may as well come from light sampling, if that finds every
-    // light.
+    // light. After some bounces all of it may as well come from light sampling, where that cannot
+    // miss: of several lights it might choose one that is hidden, and seldom the one that shines.
     constexpr int long_path = 5;
     flat.config.FINAL_BY_LIGHTS = flat.config.STRATEGY == 0 && f.max_depth >= long_path &&
-                                          f.max_depth < INT_MAX && flat.config.ENVIRONMENT != 1 &&
-                                          !work.light_by_chance
+                                          f.max_depth < INT_MAX && flat.config.ENVIRONMENT == 0 &&
+                                          flat.config.LIGHT_COUNT == 1 && !work.light_by_chance
                                       ? 1
                                       : 0;
     flat.config.INTEGRATOR = integrator.kind == IntegratorKind::depth ? 1 : 0;

@@ -155,8 +155,10 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     const auto found = work.primitive_of_shape.find(emitter.shape);
     if (found == work.primitive_of_shape.end()) {
         info.kind = CLR_LIGHT_TRIANGLE;
-        if (!(radiance > 0))
+        if (!(radiance > 0)) {
+            work.light_by_chance = true;
             return;
+        }
         info.density = 1;
         info.light = list.size() -
                      static_cast<uint>(flat.config.SPHERE_COUNT + flat.config.PLANAR_COUNT) -
@@ -181,9 +183,7 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         std::copy_n(sphere.center, 3, info.center);
         light.area = info.radius = sphere.radius;
         // A sphere that shines inwards is met by chance only: nothing outside sees it.
-        if (!(radiance > 0))
-            return;
-        if (!(sphere.radius > 0)) {
+        if (!(sphere.radius > 0) || !(radiance > 0)) {
             work.light_by_chance = true;
             return;
         }
@@ -199,8 +199,10 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     info.kind = light.kind = CLR_LIGHT_PLANAR;
     const Planar &planar = flat.planars[light.prim];
     light.area = planar.area;
-    if (!(radiance > 0) || !(planar.area > 0))
+    if (!(radiance > 0) || !(planar.area > 0)) {
+        work.light_by_chance = true;
         return;
+    }
     info.density = 1 / planar.area;
     LightExtent extent;
     for (int c = 0; c < 3; ++c) {
@@ -241,6 +243,11 @@ double shadow_free_distance(const LightExtent &light, const Sphere &sphere) {
 /// its own way, and large spheres may be shown never to be.
 void set_sole_light(const LightExtent &extent, FlatScene &flat) {
     const Light &sole = flat.lights.front();
+    const glm::dvec3 middle = (extent.lower + extent.upper) * 0.5;
+    const glm::dvec3 diagonal = extent.upper - extent.lower;
+    for (int c = 0; c < 3; ++c)
+        flat.frame.sole_light[c] = static_cast<float>(middle[c]);
+    flat.frame.sole_light[3] = static_cast<float>(glm::dot(diagonal, diagonal));
     if (sole.kind == CLR_LIGHT_TRIANGLE)
         for (EmitterInfo &info : flat.emitters)
             info.density = info.density > 0 ? 1 / sole.area : 0.0f;

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::size_t bins = 12;
+/// Keeps the device's products finite.
+constexpr double largest_intensity = 1e30;
 
 /// A cone of directions; empty, or with a half angle up to pi.
 struct Cone {
@@ -212,7 +214,7 @@ LightBounds flat_bounds(const Bounds &b, uint child, float (&axis)[4]) {
     // A little wider, for the rounding of the centre.
     const double grown = radius * (1 + 1e-5) + 1e-6 * glm::length(center);
     flat.radius2 = static_cast<float>(grown * grown);
-    flat.intensity = static_cast<float>(b.intensity);
+    flat.intensity = static_cast<float>(std::min(b.intensity, largest_intensity));
     flat.child = child;
     const double angle = std::min(b.cone.angle + 1e-3, pi);
     flat.cosine = angle >= pi ? -1.0f : static_cast<float>(std::cos(angle));

@@ -47,7 +47,9 @@ typedef struct {
     float filter_radius;  /* pixels */
     uint triangle_blocks; /* in the BVH's leaves */
     uint sphere_blocks;
-    uint pad2[6];
+    float sole_light[4]; /* FINAL_BY_LIGHTS: the only light's middle, and the square of a distance
+                            from which it looks small */
+    uint pad2[2];
 } FrameData;
 CLR_STATIC_SIZE(FrameData, 256);
 

@@ -1,9 +1,12 @@
 /// What the reader of scene files makes of every kind of element. The expected numbers are those of
 /// Mitsuba 3.9.1, scalar_rgb.
 
+#include "image/image.h"
 #include "mitsuba_text_scene.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
 
 using namespace clrender;
 using namespace test;
@@ -260,4 +263,28 @@ TEST_CASE("textures") {
     const glm::dvec3 uv = board.to_uv * glm::dvec3(1, 1, 1);
     CHECK(uv.x == Approx(2.1));
     CHECK(uv.y == Approx(3));
+}
+
+TEST_CASE("pictures of scenes hold finite values, and none below zero") {
+    const ScratchFolder folder;
+    const auto pfm = [&](float value) {
+        const float pixels[12] = {1, 2, 3, 4, 5, value, 7, 8, 9, 10, 11, 12};
+        return folder.file("map.pfm",
+                           "Pf\n3 4\n-1\n" +
+                               std::string(reinterpret_cast<const char *>(pixels), sizeof(pixels)));
+    };
+    const auto load = [&](float value) {
+        return load_text(R"(<emitter type="envmap"><string name="filename" value=")" + pfm(value) +
+                         R"("/></emitter>)");
+    };
+    for (const float value :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        const std::string error = error_of([&] { load(value); });
+        INFO(error);
+        CHECK(error.find("pixel (2, 2)") != std::string::npos);
+        CHECK(error.find("expected finite values") != std::string::npos);
+    }
+    const Scene scene = load(-6);
+    const Image &image = *scene.emitters.at(0).bitmap;
+    CHECK(*std::min_element(image.f32.begin(), image.f32.end()) == 0.0f);
 }

@@ -257,3 +257,26 @@ TEST_CASE("pixel_centers looks exactly at the centres of the pixels") {
                 CHECK(value_at(picture.mean, x, y, c) ==
                       Approx(value_at(texture, x, 11 - y, c)).epsilon(1e-5));
 }
+
+TEST_CASE("a light that nothing sees takes nothing from those that shine") {
+    // A room and a ball in it, albedo .5, all of which emit 1: paths of up to 5 segments see
+    // 1 + .5 + .25 + .125 + .0625. Inside the ball is a lamp a million times as bright.
+    const std::string glow = R"(<bsdf type="diffuse"><rgb name="reflectance" value=".5"/></bsdf>
+        <emitter type="area"><rgb name="radiance" value="1"/></emitter>)";
+    const std::string room = R"(<shape type="cube"><transform name="to_world"><scale value="3"/>
+        </transform><boolean name="flip_normals" value="true"/>)" +
+                             glow + "</shape>" +
+                             R"(<shape type="sphere"><float name="radius" value="0.5"/>)" + glow +
+                             "</shape>";
+    const std::string lamp = R"(<shape type="sphere"><float name="radius" value="0.2"/>
+        <emitter type="area"><rgb name="radiance" value="1e6"/></emitter></shape>)";
+    const Scene scene =
+        scene_from_xml(integrator(5) + camera("0 0 -2.5", "0 0 0", "0 1 0") + room + lamp);
+    for (const bool sobol : {false, true}) {
+        TestRender how;
+        how.spp = 256;
+        how.sobol = sobol;
+        const MeasuredImage measured = render_measured(scene, how);
+        CHECK(channel_mean(measured.mean, 0) == Approx(1.9375).margin(0.005));
+    }
+}
