@@ -91,18 +91,21 @@ int render_command(const cli::Options &options) {
     cli::RunTimes times;
     times.parse = seconds_since(start);
     profile.add_phase("parse", start, std::chrono::steady_clock::now());
+    cli::Progress progress(static_cast<double>(scene.film.crop_width) * scene.film.crop_height *
+                               scene.sample_count,
+                           scene.sample_count, !options.quiet && !options.check);
+    const RenderOptions how = render_options(options, progress, profile);
     if (options.check) {
-        log::info(fmt::format("{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples",
-                              options.scene, scene.shapes.size(), scene.emitters.size(),
-                              scene.film.crop_width, scene.film.crop_height, scene.sample_count));
+        log::info(fmt::format(
+            "{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples, {:.2f} MiB on the device",
+            options.scene, scene.shapes.size(), scene.emitters.size(), scene.film.crop_width,
+            scene.film.crop_height, scene.sample_count,
+            static_cast<double>(device_bytes_needed(scene, how)) / (1 << 20)));
         return 0;
     }
 
     cli::catch_interrupts();
-    const double paths =
-        static_cast<double>(scene.film.crop_width) * scene.film.crop_height * scene.sample_count;
-    cli::Progress progress(paths, scene.sample_count, !options.quiet);
-    const RenderResult result = render_scene(scene, render_options(options, progress, profile));
+    const RenderResult result = render_scene(scene, how);
     progress.finish();
 
     const auto write_start = std::chrono::steady_clock::now();

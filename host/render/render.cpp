@@ -288,7 +288,26 @@ void PathTracer::complete_profile(const RenderStats &stats) {
     profile.peak = measure_peak(entry_, context_, queue_);
 }
 
+FlattenOptions flatten_options(const RenderOptions &options) {
+    FlattenOptions flatten_options;
+    flatten_options.brute_force = options.brute_force;
+    flatten_options.pixel_centers = options.pixel_centers;
+    flatten_options.strategy = options.strategy;
+    flatten_options.generality = options.generality;
+    return flatten_options;
+}
+
 } // namespace
+
+std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
+    FlatScene flat = flatten(scene, flatten_options(options));
+    build_hierarchy(flat);
+    const auto tiles = [](std::size_t side) { return (side + cpu_tile - 1) / cpu_tile; };
+    const std::size_t width = flat.frame.width;
+    const std::size_t height = flat.frame.height;
+    return flat.bytes() + width * height * sizeof(FilmPixel) +
+           tiles(width) * tiles(height) * sizeof(ItemCounters);
+}
 
 RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     RenderResult result;
@@ -299,12 +318,7 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     stats.seconds_device = watch.lap("open the device");
     log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
 
-    FlattenOptions flatten_options;
-    flatten_options.brute_force = options.brute_force;
-    flatten_options.pixel_centers = options.pixel_centers;
-    flatten_options.strategy = options.strategy;
-    flatten_options.generality = options.generality;
-    FlatScene flat = flatten(scene, flatten_options);
+    FlatScene flat = flatten(scene, flatten_options(options));
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
     flat.config.TILE = entry.is_cpu || flat.config.FILTER == 3 ? cpu_tile : gpu_tile;

@@ -57,6 +57,10 @@ struct RenderResult {
     bool interrupted = false;
 };
 
+/// Bytes that rendering the scene takes on a device: what is uploaded, and the film. Needs no
+/// device.
+std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options = {});
+
 /// Flattens, compiles, uploads and renders. Throws DeviceError.
 RenderResult render_scene(const Scene &scene, const RenderOptions &options = {});
 

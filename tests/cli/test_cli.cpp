@@ -95,6 +95,20 @@ TEST_CASE("A check reads the scene and writes nothing") {
     CHECK_FALSE(folder.has("scene.exr"));
 }
 
+TEST_CASE("A check tells the memory that the device will need") {
+    const TempFolder folder;
+    const std::string scene = std::string(CLRENDER_SCENE_DIR) + "/mesh_bvh.xml";
+    const ProgramResult check = run_clrender(folder.path(), {"--check", scene, "-r", "100x70"});
+    REQUIRE(check.exit_code == 0);
+    const std::size_t end = check.err.find(" MiB on the device");
+    REQUIRE(end != std::string::npos);
+    const double predicted = std::stod(check.err.substr(check.err.rfind(' ', end - 1))) * (1 << 20);
+    REQUIRE(run_clrender(folder.path(), {scene, "-r", "100x70", "-s", "1", "--stats", "stats.json"})
+                .exit_code == 0);
+    const auto stats = nlohmann::json::parse(read_file(folder.path() / "stats.json"));
+    CHECK(predicted == Approx(stats["memory"]["device_bytes"].get<double>()).epsilon(0.05));
+}
+
 TEST_CASE("Without -o the picture is SCENE.png and SCENE.exr in the current folder") {
     const TempFolder folder;
     fs::create_directory(folder.path() / "scenes");
