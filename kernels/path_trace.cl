@@ -240,7 +240,6 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
     if (!any_lane(lit))
         return;
     real pdf;
-    /* What no light sample could have found need not be asked for its density. */
     vec3 radiance = light_of_surface(scene, surface, prim, p->o, p->prev_n, p->d, t, lit, &pdf);
     paths_add_radiance(p, radiance, weight_of_chance(p, pdf), lit);
 }
