@@ -74,15 +74,11 @@ void flatten_integrator(Flattening &work) {
     FrameData &f = flat.frame;
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
     f.rr_depth = integrator.rr_depth;
-    flat.config.STRATEGY = work.options.strategy;
+    flat.config.STRATEGY = strategy_of(work);
     flat.config.HIDE_EMITTERS = integrator.hide_emitters ? 1 : 0;
     if (integrator.kind == IntegratorKind::direct) {
         f.max_depth = 2;
         f.rr_depth = INT_MAX;
-        if (integrator.bsdf_samples == 0)
-            flat.config.STRATEGY = 1;
-        else if (integrator.emitter_samples == 0)
-            flat.config.STRATEGY = 2;
     }
     // The last ray of a path would only bring what multiple importance sampling expects of it:
     // light. After some bounces all of it may as well come from light sampling, where that cannot
@@ -99,6 +95,15 @@ void flatten_integrator(Flattening &work) {
 }
 
 } // namespace
+
+int strategy_of(const Flattening &work) {
+    const Integrator &integrator = work.scene.integrator;
+    if (integrator.kind == IntegratorKind::direct && integrator.bsdf_samples == 0)
+        return 1;
+    if (integrator.kind == IntegratorKind::direct && integrator.emitter_samples == 0)
+        return 2;
+    return work.options.strategy;
+}
 
 void flatten_camera(Flattening &work) {
     const Scene &scene = work.scene;

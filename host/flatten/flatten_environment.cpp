@@ -61,33 +61,60 @@ void append_distribution(std::span<const double> weights, std::vector<float> &cd
     }
 }
 
-/// The distributions over the cells between four texels each, by mean luminance times solid angle;
-/// returns the integral of luminance over all directions.
-double build_cells(std::size_t width, std::size_t height, FlatScene &flat) {
-    const std::size_t rows = height - 1;
-    const auto luminance_at = [&](std::size_t row, std::size_t column) {
-        const float *c = &flat.env_texels[3 * (row * width + column % width)];
-        return luminance({c[0], c[1], c[2]});
-    };
-    std::vector<double> weight(width * rows);
-    std::vector<double> weight_of_row(rows, 0.0);
+/// What light sampling makes of a map: the weights of the cells between four texels each.
+struct CellWeights {
+    std::vector<double> cells; ///< row by row
     double total = 0;
+};
+
+/// Weights by the luminance above `floor` times the solid angle.
+CellWeights weigh_cells(const FlatScene &flat, double floor) {
+    const std::size_t width = flat.frame.env_width, rows = flat.frame.env_height - 1;
+    const auto weight_at = [&](std::size_t row, std::size_t column) {
+        const float *c = &flat.env_texels[3 * (row * width + column % width)];
+        return std::max(0.0, luminance({c[0], c[1], c[2]}) - floor);
+    };
+    CellWeights weights;
+    weights.cells.reserve(width * rows);
     for (std::size_t j = 0; j < rows; ++j)
         for (std::size_t i = 0; i < width; ++i) {
-            const double mean = (luminance_at(j, i) + luminance_at(j, i + 1) +
-                                 luminance_at(j + 1, i) + luminance_at(j + 1, i + 1)) /
+            const double mean = (weight_at(j, i) + weight_at(j, i + 1) + weight_at(j + 1, i) +
+                                 weight_at(j + 1, i + 1)) /
                                 4;
-            weight[j * width + i] = mean * cell_solid_angle(j, rows, width);
-            weight_of_row[j] += weight[j * width + i];
-            total += weight[j * width + i];
+            weights.cells.push_back(mean * cell_solid_angle(j, rows, width));
+            weights.total += weights.cells.back();
         }
-    if (!(total > 0))
+    return weights;
+}
+
+/// The distributions of light sampling over the map, and the luminance that they leave to BSDF
+/// sampling: that of the mean direction, which paths find by themselves as often as it pays, so
+/// that light samples go to what is brighter (Karlik et al., "MIS compensation: optimizing sampling
+/// techniques in multiple importance sampling", 2019). Where light sampling is `alone`, nothing.
+/// Returns the integral over all directions of the luminance that is sampled; 0 for a black map.
+double build_cells(FlatScene &flat, bool alone) {
+    const std::size_t width = flat.frame.env_width, rows = flat.frame.env_height - 1;
+    CellWeights weights = weigh_cells(flat, 0);
+    if (!(weights.total > 0))
         return 0;
+    if (!alone) {
+        const auto mean = static_cast<float>(weights.total / (4 * pi));
+        CellWeights above = weigh_cells(flat, mean);
+        // A map that is even all over has nothing brighter but for rounding.
+        constexpr double least_part = 1e-5;
+        if (above.total > least_part * weights.total) {
+            weights = std::move(above);
+            flat.frame.env_floor = mean;
+        }
+    }
+    std::vector<double> weight_of_row(rows, 0.0);
+    for (std::size_t i = 0; i < weights.cells.size(); ++i)
+        weight_of_row[i / width] += weights.cells[i];
     append_distribution(weight_of_row, flat.env_cdf, flat.env_guide);
     for (std::size_t j = 0; j < rows; ++j)
-        append_distribution(std::span(weight).subspan(j * width, width), flat.env_cdf,
+        append_distribution(std::span(weights.cells).subspan(j * width, width), flat.env_cdf,
                             flat.env_guide);
-    return total;
+    return weights.total;
 }
 
 } // namespace
@@ -123,7 +150,7 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
         for (int column = 0; column < 3; ++column)
             f.env_rotation[4 * row + column] = static_cast<float>(axis[column]);
     }
-    *power = build_cells(width, height, flat);
+    *power = build_cells(flat, strategy_of(work) == 1);
     // A map that is black all over adds nothing.
     flat.config.ENVIRONMENT = *power > 0 ? 2 : 1;
 }

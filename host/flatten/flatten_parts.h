@@ -41,12 +41,15 @@ void flatten_shapes(Flattening &work);
 void flatten_lights(Flattening &work);
 
 /// The environment: a constant one, or a map with its table; returns its light, of which only the
-/// probability is left to fill, if it is to be sampled. `power` becomes the integral of its
-/// luminance over all directions.
+/// probability is left to fill, if it is to be sampled. `power` becomes the integral over all
+/// directions of the luminance that light sampling goes by.
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power);
 
 /// A constant environment, or none, as a map that light sampling never chooses.
 void make_environment_a_map(FlatScene &flat);
+
+/// How light is looked for, as STRATEGY in kernel_config.def.
+int strategy_of(const Flattening &work);
 
 /// Camera, film and the bounds of the bounce loop.
 void flatten_camera(Flattening &work);

@@ -35,6 +35,7 @@ typedef struct {
     float env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
     uint env_width;             /* pixels of the map */
     uint env_height;
+    float env_floor; /* luminance that light sampling takes off the map's, down to 0 */
     int max_depth; /* edges of the longest path; INT_MAX: unbounded */
     int rr_depth;  /* roulette from this depth on; INT_MAX: never */
     uint width;    /* of the picture (the crop window), pixels */
@@ -49,7 +50,7 @@ typedef struct {
     uint sphere_blocks;
     float sole_light[4]; /* FINAL_BY_LIGHTS: the only light's middle, and the square of a distance
                             from which it looks small */
-    uint pad2[2];
+    uint pad2;
 } FrameData;
 CLR_STATIC_SIZE(FrameData, 256);
 
