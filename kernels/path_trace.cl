@@ -27,11 +27,12 @@
 #define REFILL_LANES ((3 * LANES + 3) / 4)
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
-   of the last direction, infinite where the last vertex was specular or the camera, and `prev_n`
-   the normal there; `eta2` undoes the compression of radiance in roulette; `radiance` is what the
-   sample has gathered. */
+   of the last direction, infinite where the last vertex was specular or the camera, divided by the
+   number of lights that were sampled there, and `prev_n` the normal there; `first` marks paths that
+   have met nothing diffuse yet; `eta2` undoes the compression of radiance in roulette; `radiance`
+   is what the sample has gathered. */
 typedef struct {
-    mask_l alive;
+    mask_l alive, first;
     vec3 o, d;
     int_l self;
     real t_max;
@@ -115,6 +116,7 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     ray.t_far -= ray.t_near;
 #endif
     p->alive |= fresh;
+    p->first |= fresh;
     p->pending |= fresh;
     p->o = v3_pick(fresh, ray.o, p->o);
     p->d = v3_pick(fresh, ray.d, p->d);
@@ -246,11 +248,12 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 #endif
 
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
-/* Direct light at diffuse surfaces: one sampled light each, behind a shadow ray. In lanes of
-   `final` the path ends here, and no ray follows that could find a light by chance. */
-CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                 vec3 albedo, int_l prim, BounceNumbers numbers, mask_l final,
-                                 mask_l diffuse) {
+/* Light of one sampled light each, behind a shadow ray. In lanes of `final` the path ends here, and
+   no ray follows that could find a light by chance; in lanes of `parted` this is one of
+   LIGHT_SAMPLES. */
+CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surface, vec3 n,
+                                vec3 albedo, int_l prim, BounceNumbers numbers, mask_l final,
+                                mask_l parted, mask_l diffuse) {
     vec3 o = ray_origin(surface, n);
     LightSample light = light_sample(scene, o, n, numbers, p->sampler, diffuse);
     real cosine = v3_dot(n, light.wi);
@@ -263,8 +266,14 @@ CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surfa
     mask_l lit =
         wanted & ~scene_occluded(scene, o, light.wi, prim, light.prim, light.t_max, wanted);
     real bsdf_pdf = cosine * CLR_INV_PI;
+#if LIGHT_SAMPLES > 1
+    real share = pick(parted, real_of(1.0f / LIGHT_SAMPLES), real_of(1.0f));
+#else
+    const float share = 1.0f;
+    (void)parted;
+#endif
 #if STRATEGY == 0
-    real weight = bsdf_pdf * mis_weight_over_pdf(light.inv_pdf, bsdf_pdf);
+    real weight = bsdf_pdf * mis_weight_over_pdf(light.inv_pdf, bsdf_pdf * share);
 #if FINAL_BY_LIGHTS
     weight = pick(final, bsdf_pdf * light.inv_pdf, weight);
 #else
@@ -276,7 +285,25 @@ CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surfa
 #else
     real weight = bsdf_pdf * light.inv_pdf;
 #endif
-    paths_add_radiance(p, v3_mul(albedo, light.radiance), weight, lit);
+    paths_add_radiance(p, v3_mul(albedo, light.radiance), weight * share, lit);
+}
+
+/* Direct light at diffuse surfaces. In lanes of `parted`, where paths first meet one, the noise of
+   the whole path is mostly that of the light, and more of it is sampled. */
+CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
+                                 vec3 albedo, int_l prim, BounceNumbers numbers, mask_l final,
+                                 mask_l parted, mask_l diffuse) {
+#if LIGHT_SAMPLES > 1
+    const uint parts = any_lane(parted) ? LIGHT_SAMPLES : 1u;
+    for (uint part = 0u; part < parts; ++part) {
+        if (part > 0u)
+            sampler_light_of_part(p->sampler, part, &numbers);
+        paths_add_light(scene, p, surface, n, albedo, prim, numbers, final, parted,
+                        part > 0u ? parted : diffuse);
+    }
+#else
+    paths_add_light(scene, p, surface, n, albedo, prim, numbers, final, parted, diffuse);
+#endif
 }
 #endif
 
@@ -368,10 +395,15 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
     cosine = fabs(cosine);
 
-    BounceNumbers numbers =
-        sampler_bounce(p->sampler, going & ilt(p->depth, int_of(ORDERED_BOUNCES)));
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
+    mask_l parted = LIGHT_SAMPLES > 1 ? diffuse & p->first : no_lanes();
+#else
+    mask_l parted = no_lanes();
+#endif
+    mask_l ordered = parted | (going & ilt(p->depth, int_of(ORDERED_BOUNCES)));
+    BounceNumbers numbers = sampler_bounce(p->sampler, ordered, parted);
+#if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l final = no_lanes();
 #if FINAL_BY_LIGHTS
     /* Close to the light, where it looks large, the ray that could meet it is worth tracing. */
@@ -380,7 +412,8 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
             gt(v3_dot(to_light, to_light), real_of(f->sole_light[3]));
 #endif
     if (any_lane(diffuse))
-        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, numbers, final, diffuse);
+        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, numbers, final, parted,
+                         diffuse);
 #if FINAL_BY_LIGHTS
     p->alive &= ~final;
     if (!any_lane(p->alive))
@@ -400,6 +433,10 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     p->o = v3_pick(moved, ray_origin(surface, sample.wo), p->o);
     p->d = v3_pick(moved, renormalize(sample.wo), p->d);
     p->self = ipick(moved, hit.prim, p->self);
+#if LIGHT_SAMPLES > 1
+    sample.pdf = pick(parted, sample.pdf * (1.0f / LIGHT_SAMPLES), sample.pdf);
+    p->first &= ~parted;
+#endif
     p->prev_pdf = pick(moved, sample.pdf, p->prev_pdf);
 #if LIGHT_COUNT == -1
     p->prev_n = v3_pick(moved, n, p->prev_n);
@@ -419,7 +456,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
 CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block, uint *rays,
                              ItemCounters *counters) {
     Paths p;
-    p.alive = p.pending = no_lanes();
+    p.alive = p.first = p.pending = no_lanes();
     p.rays = 0u;
     p.sampler = sampler_init(0u, as_uint_l(p.alive), as_uint_l(p.alive));
     p.pixel = p.depth = int_of(0);

@@ -190,6 +190,7 @@ struct RawOptions {
     std::string lanes = "auto";
     std::string accel = "bvh";
     std::string sampler = "sobol";
+    std::string light_samples = "auto";
     std::string profile;
     std::vector<std::string> generic;
     std::vector<std::string> defines;
@@ -246,6 +247,12 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "sobol, or independent: random numbers without order (default: sobol)")
         ->type_name("NAME")
         ->check(one_of({"sobol", "independent"}))
+        ->group(group);
+    app.add_option("--light-samples", raw.light_samples,
+                   "Lights sampled where a path first meets a diffuse surface:\n"
+                   "auto, 1, 2, 4, 8, 16 (default: auto)")
+        ->type_name("N")
+        ->check(one_of({"auto", "1", "2", "4", "8", "16"}))
         ->group(group);
     app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
         ->type_name("WHICH")
@@ -320,6 +327,7 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (!raw.resolution.empty())
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
+    options.light_samples = raw.light_samples == "auto" ? 0 : *parse_number<int>(raw.light_samples);
     options.independent = raw.sampler == "independent";
     options.profile = !raw.profile.empty();
     if (raw.profile != bare_profile)

@@ -42,6 +42,7 @@ struct Options {
     bool pixel_centers = false;
     Accel accel = Accel::bvh;
     bool independent = false; ///< --sampler independent
+    int light_samples = 0;    ///< 1, 2, 4, 8 or 16; 0: what suits the scene
     bool check = false;
     std::string stats;         ///< JSON file, or empty
     bool profile = false;      ///< print the table

@@ -75,6 +75,7 @@ struct FlattenOptions {
     bool brute_force = false;   ///< --accel none
     bool pixel_centers = false; ///< all samples at pixel centres
     int strategy = 0;           ///< as STRATEGY in kernel_config.def
+    int light_samples = 0;      ///< as LIGHT_SAMPLES in kernel_config.def; 0: chosen
     Generality generality{};    ///< what the kernel is to be able to do beyond the scene
 };
 

@@ -293,6 +293,7 @@ FlattenOptions flatten_options(const RenderOptions &options) {
     flatten_options.brute_force = options.brute_force;
     flatten_options.pixel_centers = options.pixel_centers;
     flatten_options.strategy = options.strategy;
+    flatten_options.light_samples = options.light_samples;
     flatten_options.generality = options.generality;
     return flatten_options;
 }

@@ -15,17 +15,19 @@ struct Profile;
 struct RenderOptions {
     int spp = 0; ///< samples a pixel; 0: the scene's
     std::uint32_t seed = 0;
-    int lanes = 0;                           ///< 1, 4, 8 or 16; 0: what suits the device
-    std::string device = "auto";             ///< see choose_device()
-    bool brute_force = false;                ///< test every triangle
-    bool pixel_centers = false;              ///< all samples at pixel centres
-    bool independent_sampler = false;        ///< in place of Sobol' points
-    int strategy = 0;                        ///< 0 MIS, 1 light sampling only, 2 BSDF sampling only
-    int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
-    int tile = 0;                            ///< work-items in one launch; 0: chosen
-    std::set<std::string> generality;        ///< as FlattenOptions::generality
-    std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
-    Profile *profile = nullptr;              ///< filled where given, with a kernel that counts
+    int lanes = 0;                    ///< 1, 4, 8 or 16; 0: what suits the device
+    std::string device = "auto";      ///< see choose_device()
+    bool brute_force = false;         ///< test every triangle
+    bool pixel_centers = false;       ///< all samples at pixel centres
+    bool independent_sampler = false; ///< in place of Sobol' points
+    int strategy = 0;                 ///< 0 MIS, 1 light sampling only, 2 BSDF sampling only
+    int light_samples = 0;            ///< where a path first meets a diffuse surface: a power
+                                      ///< of 2; 0: chosen
+    int batch = 0;                    ///< blocks of samples in one launch; 0: chosen
+    int tile = 0;                     ///< work-items in one launch; 0: chosen
+    std::set<std::string> generality; ///< as FlattenOptions::generality
+    std::string kernel_dir;           ///< kernel sources in place of the embedded ones
+    Profile *profile = nullptr;       ///< filled where given, with a kernel that counts
     std::function<void(double)> on_progress; ///< paths done; called after each launch
     std::function<bool()> should_stop;       ///< asked after each launch
 };

@@ -16,6 +16,8 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.lanes = how.lanes;
     options.pixel_centers = how.pixel_centers;
     options.independent_sampler = !how.sobol;
+    options.light_samples = how.light_samples;
+    options.strategy = how.strategy;
     options.generality = how.generality;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;

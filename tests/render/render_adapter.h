@@ -20,6 +20,8 @@ struct TestRender {
     int batch_blocks = 0;                  ///< as in RenderOptions
     int tile_items = 0;                    ///< as in RenderOptions
     std::set<std::string> generality = {}; ///< as in RenderOptions
+    int light_samples = 0;                 ///< as in RenderOptions
+    int strategy = 0;                      ///< as in RenderOptions
     bool sobol = false; ///< independent samples, whose variance is what it looks like, if not
 };
 

@@ -86,6 +86,36 @@ TEST_CASE("all lane widths give the same picture but for the noise") {
         check_same_by_z_test(fmt::format("lanes_{}_and_1", widths[i]), pictures[i], pictures[0]);
 }
 
+TEST_CASE("the number of light samples does not change the picture but for the noise") {
+    const Scene scene = small_scene(1);
+    const auto one = render_measured(scene, {.spp = 512, .light_samples = 1});
+    for (const int count : {2, 8})
+        check_same_by_z_test(fmt::format("light_samples_{}", count),
+                             render_measured(scene, {.spp = 512,
+                                                     .seed = static_cast<std::uint32_t>(count),
+                                                     .light_samples = count}),
+                             one);
+}
+
+TEST_CASE("light and BSDF sampling alone and together find the same light of a sky") {
+    // No bright sun, which BSDF sampling alone would hardly ever find.
+    const Scene scene = scene_from_xml(
+        R"(<integrator type="path"><integer name="max_depth" value="3"/></integrator>
+        <sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
+        <lookat origin="0 1 6" target="0 0 0" up="0 1 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="32"/><integer name="height" value="32"/>
+        <rfilter type="box"/></film></sensor>
+        <emitter type="envmap"><string name="filename" value="data/sky.png"/></emitter>
+        <shape type="rectangle"><transform name="to_world"><scale value="6"/>
+        <rotate x="1" angle="-90"/><translate value="0 -1 0"/></transform></shape>
+        <shape type="sphere"/>)");
+    const auto both = render_measured(scene, {.spp = 1024});
+    for (const int strategy : {1, 2})
+        check_same_by_z_test(fmt::format("sky_strategy_{}", strategy),
+                             render_measured(scene, {.spp = 1024, .seed = 2, .strategy = strategy}),
+                             both);
+}
+
 TEST_CASE("the same seed gives the same picture to the bit, another seed another one") {
     const Scene scene = small_scene(1);
     const TestRender how{.spp = 64, .seed = 5};
