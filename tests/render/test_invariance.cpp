@@ -7,6 +7,10 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
 
 using namespace clrender;
 using namespace clrender::test;
@@ -98,17 +102,32 @@ TEST_CASE("the number of light samples does not change the picture but for the n
 }
 
 TEST_CASE("light and BSDF sampling alone and together find the same light of a sky") {
-    // No bright sun, which BSDF sampling alone would hardly ever find.
-    const Scene scene = scene_from_xml(
+    // Brighter upwards and towards one side, without a sun, which BSDF sampling would hardly find.
+    constexpr int width = 64, height = 32;
+    const auto map = std::filesystem::temp_directory_path() /
+                     ("clrender_sky_" + std::to_string(getpid()) + ".pfm");
+    std::ofstream file(map, std::ios::binary);
+    file << "PF\n" << width << ' ' << height << "\n-1\n";
+    for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column)
+            for (const float tint : {0.7f, 0.8f, 1.0f}) {
+                const float value = tint * (0.2f + 0.03f * static_cast<float>(row)) *
+                                    (column < width / 2 ? 1.0f : 3.0f);
+                file.write(reinterpret_cast<const char *>(&value), sizeof(value));
+            }
+    file.close();
+    const Scene scene = scene_from_xml(fmt::format(
         R"(<integrator type="path"><integer name="max_depth" value="3"/></integrator>
         <sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
         <lookat origin="0 1 6" target="0 0 0" up="0 1 0"/></transform>
         <film type="hdrfilm"><integer name="width" value="32"/><integer name="height" value="32"/>
         <rfilter type="box"/></film></sensor>
-        <emitter type="envmap"><string name="filename" value="data/sky.png"/></emitter>
+        <emitter type="envmap"><string name="filename" value="{}"/></emitter>
         <shape type="rectangle"><transform name="to_world"><scale value="6"/>
         <rotate x="1" angle="-90"/><translate value="0 -1 0"/></transform></shape>
-        <shape type="sphere"/>)");
+        <shape type="sphere"/>)",
+        map.string()));
+    std::filesystem::remove(map);
     const auto both = render_measured(scene, {.spp = 1024});
     for (const int strategy : {1, 2})
         check_same_by_z_test(fmt::format("sky_strategy_{}", strategy),
