@@ -224,7 +224,7 @@ CLR_INLINE void paths_add_environment(const SceneData *scene, Paths *p, mask_l e
         return;
 #if ENVIRONMENT == 2
     real pdf;
-    vec3 radiance = env_eval(scene, p->d, escaped, &pdf);
+    vec3 radiance = env_eval(scene, p->d, &pdf);
     paths_add_radiance(p, radiance, weight_of_chance(p, pdf * f->env_probability), escaped);
 #else
     vec3 radiance = v3_of(f->env_radiance[0], f->env_radiance[1], f->env_radiance[2]);

@@ -61,18 +61,35 @@ void append_distribution(std::span<const double> weights, std::vector<float> &cd
     }
 }
 
+/// Radiance and luminance of the map's pixels, each row's first once more behind its last.
+void append_texels(const Emitter &emitter, FlatScene &flat) {
+    const std::size_t width = flat.frame.env_width, height = flat.frame.env_height;
+    flat.env_texels.reserve(4 * (width + 1) * height);
+    for (std::size_t row = 0; row < height; ++row)
+        for (std::size_t column = 0; column <= width; ++column) {
+            const Rgb c = radiance_of(emitter, row * width + column % width);
+            for (int k = 0; k < 3; ++k)
+                flat.env_texels.push_back(static_cast<float>(c[k]));
+            flat.env_texels.push_back(static_cast<float>(luminance(c)));
+        }
+}
+
 /// What light sampling makes of a map: the weights of the cells between four texels each.
 struct CellWeights {
     std::vector<double> cells; ///< row by row
     double total = 0;
 };
 
+/// What of a luminance is above the floor.
+float weight_above(float luminance, float floor) {
+    return std::max(luminance - floor, 0.0f);
+}
+
 /// Weights by the luminance above `floor` times the solid angle.
-CellWeights weigh_cells(const FlatScene &flat, double floor) {
+CellWeights weigh_cells(const FlatScene &flat, float floor) {
     const std::size_t width = flat.frame.env_width, rows = flat.frame.env_height - 1;
     const auto weight_at = [&](std::size_t row, std::size_t column) {
-        const float *c = &flat.env_texels[3 * (row * width + column % width)];
-        return std::max(0.0, luminance({c[0], c[1], c[2]}) - floor);
+        return double{weight_above(flat.env_texels[4 * (row * (width + 1) + column) + 3], floor)};
     };
     CellWeights weights;
     weights.cells.reserve(width * rows);
@@ -87,14 +104,15 @@ CellWeights weigh_cells(const FlatScene &flat, double floor) {
     return weights;
 }
 
-/// The distributions of light sampling over the map, and the luminance that they leave to BSDF
-/// sampling: that of the mean direction, which paths find by themselves as often as it pays, so
-/// that light samples go to what is brighter (Karlik et al., "MIS compensation: optimizing sampling
-/// techniques in multiple importance sampling", 2019). Where light sampling is `alone`, nothing.
+/// The distributions of light sampling over the map, and its texels' weights. The mean luminance is
+/// left to BSDF sampling, which finds what is no brighter as often as it pays (Karlik et al., "MIS
+/// compensation: optimizing sampling techniques in multiple importance sampling", 2019), but where
+/// light sampling is `alone`.
 /// Returns the integral over all directions of the luminance that is sampled; 0 for a black map.
 double build_cells(FlatScene &flat, bool alone) {
     const std::size_t width = flat.frame.env_width, rows = flat.frame.env_height - 1;
-    CellWeights weights = weigh_cells(flat, 0);
+    float floor = 0;
+    CellWeights weights = weigh_cells(flat, floor);
     if (!(weights.total > 0))
         return 0;
     if (!alone) {
@@ -104,9 +122,14 @@ double build_cells(FlatScene &flat, bool alone) {
         constexpr double least_part = 1e-5;
         if (above.total > least_part * weights.total) {
             weights = std::move(above);
-            flat.frame.env_floor = mean;
+            floor = mean;
         }
     }
+    for (std::size_t i = 3; i < flat.env_texels.size(); i += 4)
+        flat.env_texels[i] = weight_above(flat.env_texels[i], floor);
+    const auto count = static_cast<double>(rows);
+    flat.frame.env_density =
+        static_cast<float>(2 * count * std::sin(pi / (2 * count)) / (pi * weights.total));
     std::vector<double> weight_of_row(rows, 0.0);
     for (std::size_t i = 0; i < weights.cells.size(); ++i)
         weight_of_row[i / width] += weights.cells[i];
@@ -133,16 +156,9 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
         return;
     }
 
-    const auto width = static_cast<std::size_t>(emitter.bitmap->width);
-    const auto height = static_cast<std::size_t>(emitter.bitmap->height);
-    flat.env_texels.reserve(3 * width * height);
-    for (std::size_t i = 0; i < width * height; ++i) {
-        const Rgb c = radiance_of(emitter, i);
-        for (int k = 0; k < 3; ++k)
-            flat.env_texels.push_back(static_cast<float>(c[k]));
-    }
-    f.env_width = static_cast<uint>(width);
-    f.env_height = static_cast<uint>(height);
+    f.env_width = static_cast<uint>(emitter.bitmap->width);
+    f.env_height = static_cast<uint>(emitter.bitmap->height);
+    append_texels(emitter, flat);
     const glm::dmat3 to_map = glm::inverse(glm::dmat3(emitter.to_world));
     for (int row = 0; row < 3; ++row) {
         const glm::dvec3 axis =
@@ -162,8 +178,10 @@ void make_environment_a_map(FlatScene &flat) {
     FrameData &f = flat.frame;
     constexpr std::size_t side = 2;
     flat.env_texels.clear();
-    for (std::size_t i = 0; i < 3 * side * side; ++i)
-        flat.env_texels.push_back(flat.config.ENVIRONMENT == 1 ? f.env_radiance[i % 3] : 0.0f);
+    for (std::size_t i = 0; i < (side + 1) * side; ++i)
+        for (int k = 0; k < 4; ++k)
+            flat.env_texels.push_back(k < 3 && flat.config.ENVIRONMENT == 1 ? f.env_radiance[k]
+                                                                            : 0.0f);
     flat.env_cdf.clear();
     flat.env_guide.clear();
     const std::vector<double> even(side, 1.0);

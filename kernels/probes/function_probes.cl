@@ -20,6 +20,20 @@ __kernel void probe_sincos(__global const float *in, __global float *out, uint c
     }
 }
 
+/* in: vectors, y before x; out: the turn of each. */
+__kernel void probe_turn(__global const float *in, __global float *out, uint count) {
+    const uint first = (uint)get_global_id(0) * LANES;
+    float y[LANES], x[LANES], turn[LANES];
+    for (uint i = 0; i < LANES; ++i) {
+        const uint at = min(first + i, count - 1u);
+        y[i] = in[2u * at];
+        x[i] = in[2u * at + 1u];
+    }
+    store_real(turn_of(load_real(y), load_real(x)), turn);
+    for (uint i = 0; i < LANES && first + i < count; ++i)
+        out[first + i] = turn[i];
+}
+
 /* out: number `dimension` of pixel i and sample i + `offset`. */
 __kernel void probe_sampler(__global float *out, uint seed, uint offset, uint dimension,
                             uint count) {

@@ -35,10 +35,11 @@ typedef struct {
     float env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
     uint env_width;             /* pixels of the map */
     uint env_height;
-    float env_floor; /* luminance that light sampling takes off the map's, down to 0 */
-    int max_depth; /* edges of the longest path; INT_MAX: unbounded */
-    int rr_depth;  /* roulette from this depth on; INT_MAX: never */
-    uint width;    /* of the picture (the crop window), pixels */
+    float env_density; /* of light sampling, per solid angle: this times the weight of the place,
+                          times the sines of the row's middle over that of the place */
+    int max_depth;     /* edges of the longest path; INT_MAX: unbounded */
+    int rr_depth;      /* roulette from this depth on; INT_MAX: never */
+    uint width;        /* of the picture (the crop window), pixels */
     uint height;
     int crop_x; /* of the crop window within the whole film */
     int crop_y;

@@ -55,6 +55,40 @@ TEST_CASE("sine and cosine of a turn are right to 2e-7", "[oclgrind]") {
     }
 }
 
+TEST_CASE("the turn of a vector is right to 6e-8", "[oclgrind]") {
+    const ClTestDevice device;
+    std::vector<float> vectors = {0, 1, 1, 0, 0, -1, -1, 0, 0, 0, 1, 1, -1, -1};
+    const std::vector<float> exact = {0, 0.25f, 0.5f, -0.25f, 0, 0.125f, -0.375f};
+    std::mt19937 random(4);
+    std::normal_distribution<double> gauss;
+    for (int i = 0; i < (small_tests() ? 50 : 100000); ++i) {
+        const double size = std::exp(10 * gauss(random));
+        vectors.push_back(static_cast<float>(gauss(random) * size));
+        vectors.push_back(static_cast<float>(gauss(random) * size * (i % 2 == 0 ? 1 : 1e-4)));
+    }
+    const std::size_t count = vectors.size() / 2;
+    for (const int lanes : widths) {
+        cl::Kernel kernel(build_probes(device, lanes), "probe_turn");
+        const cl::Buffer in = device.upload<float>(vectors);
+        const cl::Buffer out = device.allocate(count * sizeof(float));
+        kernel.setArg(0, in);
+        kernel.setArg(1, out);
+        kernel.setArg(2, static_cast<cl_uint>(count));
+        device.run(kernel, items_for(count, lanes), 1);
+        const std::vector<float> turns = device.download<float>(out, count);
+        double worst = 0;
+        for (std::size_t i = exact.size(); i < count; ++i)
+            worst = std::max(
+                worst, std::abs(std::atan2(double{vectors[2 * i]}, double{vectors[2 * i + 1]}) /
+                                    (2 * std::numbers::pi) -
+                                double{turns[i]}));
+        INFO("width " << lanes);
+        CHECK(worst < 6e-8);
+        for (std::size_t i = 0; i < exact.size(); ++i)
+            CHECK(turns[i] == Approx(exact[i]).margin(3e-8));
+    }
+}
+
 TEST_CASE("random numbers lie in [0, 1), are uniform and the same at every width", "[oclgrind]") {
     const ClTestDevice device;
     const std::size_t count = small_tests() ? 200 : 200000;
