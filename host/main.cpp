@@ -64,6 +64,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.brute_force = options.accel == cli::Accel::none;
     r.pixel_centers = options.pixel_centers;
     r.independent_sampler = options.independent;
+    r.strategy = options.strategy;
     r.light_samples = options.light_samples;
     r.batch = options.batch;
     r.tile = options.tile;

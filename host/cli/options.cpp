@@ -191,6 +191,7 @@ struct RawOptions {
     std::string accel = "bvh";
     std::string sampler = "sobol";
     std::string light_samples = "auto";
+    std::string strategy = "mis";
     std::string profile;
     std::vector<std::string> generic;
     std::vector<std::string> defines;
@@ -253,6 +254,12 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "auto, 1, 2, 4, 8, 16 (default: auto)")
         ->type_name("N")
         ->check(one_of({"auto", "1", "2", "4", "8", "16"}))
+        ->group(group);
+    app.add_option("--strategy", raw.strategy,
+                   "How light is looked for: mis, by light and BSDF sampling, or by light or bsdf\n"
+                   "sampling alone (default: mis)")
+        ->type_name("NAME")
+        ->check(one_of({"mis", "light", "bsdf"}))
         ->group(group);
     app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
         ->type_name("WHICH")
@@ -328,6 +335,7 @@ void finish_options(Options &options, const RawOptions &raw) {
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
     options.light_samples = raw.light_samples == "auto" ? 0 : *parse_number<int>(raw.light_samples);
+    options.strategy = raw.strategy == "light" ? 1 : raw.strategy == "bsdf" ? 2 : 0;
     options.independent = raw.sampler == "independent";
     options.profile = !raw.profile.empty();
     if (raw.profile != bare_profile)

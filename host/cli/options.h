@@ -43,6 +43,7 @@ struct Options {
     Accel accel = Accel::bvh;
     bool independent = false; ///< --sampler independent
     int light_samples = 0;    ///< 1, 2, 4, 8 or 16; 0: what suits the scene
+    int strategy = 0;         ///< as RenderOptions::strategy
     bool check = false;
     std::string stats;         ///< JSON file, or empty
     bool profile = false;      ///< print the table

@@ -3,6 +3,7 @@
 #include "log.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -271,11 +272,18 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
 int light_samples(const Flattening &work, const LightList &list) {
     if (work.options.light_samples > 0)
         return work.options.light_samples;
-    const uint map = work.flat.config.ENVIRONMENT == 2 ? 1 : 0;
-    if (work.scene.integrator.kind == IntegratorKind::depth || list.size() == 0)
+    const uint choices = list.size() + (work.flat.config.ENVIRONMENT == 2 ? 1 : 0);
+    const Integrator &integrator = work.scene.integrator;
+    if (integrator.kind == IntegratorKind::depth || choices == 0)
         return 1;
-    if (list.size() + map > 1)
+    constexpr unsigned most = 16;
+    if (integrator.kind == IntegratorKind::direct && integrator.emitter_samples > 1)
+        return static_cast<int>(
+            std::bit_floor(std::min(static_cast<unsigned>(integrator.emitter_samples), most)));
+    if (choices > 1)
         return 2;
+    if (list.size() == 0)
+        return 1;
     // The scene is placed so that what the camera looks at lies around the origin.
     constexpr double broad = 0.4;
     const LightExtent &sole = list.extents.front();

@@ -37,6 +37,8 @@ TEST_CASE("A scene alone: everything else is left to the scene and the program")
     CHECK_FALSE(options.rr_depth.has_value());
     CHECK_FALSE(options.seed.has_value());
     CHECK(options.lanes == 0);
+    CHECK(options.light_samples == 0);
+    CHECK(options.strategy == 0);
     CHECK(options.accel == Accel::bvh);
     CHECK(options.exposure == 0);
     CHECK(options.defines.empty());
@@ -67,6 +69,10 @@ TEST_CASE("Every option of the contract is read") {
                                     "--exposure",
                                     "-1.5",
                                     "--pixel-centers",
+                                    "--light-samples",
+                                    "8",
+                                    "--strategy",
+                                    "bsdf",
                                     "--accel",
                                     "none",
                                     "--check",
@@ -88,6 +94,8 @@ TEST_CASE("Every option of the contract is read") {
     CHECK(options.defines == std::map<std::string, std::string>{{"a", "1"}, {"b", "x=y"}});
     CHECK(options.exposure == -1.5);
     CHECK(options.pixel_centers);
+    CHECK(options.light_samples == 8);
+    CHECK(options.strategy == 2);
     CHECK(options.accel == Accel::none);
     CHECK(options.check);
     CHECK(options.stats == "s.json");
@@ -184,6 +192,8 @@ TEST_CASE("A mistake ends with exit code 2") {
         {"x.xml", "--exposure", "inf"},
         {"x.xml", "--exposure", "1e999"},
         {"x.xml", "--exposure", ""},
+        {"x.xml", "--light-samples", "3"},
+        {"x.xml", "--strategy", "both"},
         {"x.xml", "--accel", "kd"},
         {"x.xml", "-d", ""},
         {"x.xml", "-o", ""},
