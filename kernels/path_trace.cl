@@ -266,12 +266,7 @@ CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surfac
     mask_l lit =
         wanted & ~scene_occluded(scene, o, light.wi, prim, light.prim, light.t_max, wanted);
     real bsdf_pdf = cosine * CLR_INV_PI;
-#if LIGHT_SAMPLES > 1
     real share = pick(parted, real_of(1.0f / LIGHT_SAMPLES), real_of(1.0f));
-#else
-    const float share = 1.0f;
-    (void)parted;
-#endif
 #if STRATEGY == 0
     real weight = bsdf_pdf * mis_weight_over_pdf(light.inv_pdf, bsdf_pdf * share);
 #if FINAL_BY_LIGHTS
@@ -293,17 +288,13 @@ CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surfac
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
                                  vec3 albedo, int_l prim, BounceNumbers numbers, mask_l final,
                                  mask_l parted, mask_l diffuse) {
-#if LIGHT_SAMPLES > 1
     const uint parts = any_lane(parted) ? LIGHT_SAMPLES : 1u;
     for (uint part = 0u; part < parts; ++part) {
         if (part > 0u)
-            sampler_light_of_part(p->sampler, part, &numbers);
+            sampler_get_light(sampler_of_part(p->sampler, part), &numbers);
         paths_add_light(scene, p, surface, n, albedo, prim, numbers, final, parted,
                         part > 0u ? parted : diffuse);
     }
-#else
-    paths_add_light(scene, p, surface, n, albedo, prim, numbers, final, parted, diffuse);
-#endif
 }
 #endif
 
@@ -433,11 +424,9 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     p->o = v3_pick(moved, ray_origin(surface, sample.wo), p->o);
     p->d = v3_pick(moved, renormalize(sample.wo), p->d);
     p->self = ipick(moved, hit.prim, p->self);
-#if LIGHT_SAMPLES > 1
-    sample.pdf = pick(parted, sample.pdf * (1.0f / LIGHT_SAMPLES), sample.pdf);
+    real pdf = pick(parted, sample.pdf * (1.0f / LIGHT_SAMPLES), sample.pdf);
     p->first &= ~parted;
-#endif
-    p->prev_pdf = pick(moved, sample.pdf, p->prev_pdf);
+    p->prev_pdf = pick(moved, pdf, p->prev_pdf);
 #if LIGHT_COUNT == -1
     p->prev_n = v3_pick(moved, n, p->prev_n);
 #endif
