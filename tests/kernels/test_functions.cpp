@@ -26,6 +26,20 @@ std::size_t items_for(std::size_t count, int lanes) {
     return (count + width - 1) / width;
 }
 
+/// What a probe makes of `count` records, `size` floats for each.
+std::vector<float> run_probe(const ClTestDevice &device, const std::string &name, int lanes,
+                             const std::vector<float> &records, std::size_t count,
+                             std::size_t size) {
+    cl::Kernel kernel(build_probes(device, lanes), name.c_str());
+    const cl::Buffer in = device.upload<float>(records);
+    const cl::Buffer out = device.allocate(size * count * sizeof(float));
+    kernel.setArg(0, in);
+    kernel.setArg(1, out);
+    kernel.setArg(2, static_cast<cl_uint>(count));
+    device.run(kernel, items_for(count, lanes), 1);
+    return device.download<float>(out, size * count);
+}
+
 } // namespace
 
 TEST_CASE("sine and cosine of a turn are right to 2e-7", "[oclgrind]") {
@@ -36,14 +50,7 @@ TEST_CASE("sine and cosine of a turn are right to 2e-7", "[oclgrind]") {
         turns[i] = static_cast<float>(i) / static_cast<float>(count);
     turns.back() = std::nextafter(1.0f, 0.0f);
     for (const int lanes : widths) {
-        cl::Kernel kernel(build_probes(device, lanes), "probe_sincos");
-        const cl::Buffer in = device.upload<float>(turns);
-        const cl::Buffer out = device.allocate(2 * count * sizeof(float));
-        kernel.setArg(0, in);
-        kernel.setArg(1, out);
-        kernel.setArg(2, static_cast<cl_uint>(count));
-        device.run(kernel, items_for(count, lanes), 1);
-        const std::vector<float> values = device.download<float>(out, 2 * count);
+        const std::vector<float> values = run_probe(device, "probe_sincos", lanes, turns, count, 2);
         double worst = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const double angle = 2 * std::numbers::pi * static_cast<double>(turns[i]);
@@ -68,14 +75,7 @@ TEST_CASE("the turn of a vector is right to 6e-8", "[oclgrind]") {
     }
     const std::size_t count = vectors.size() / 2;
     for (const int lanes : widths) {
-        cl::Kernel kernel(build_probes(device, lanes), "probe_turn");
-        const cl::Buffer in = device.upload<float>(vectors);
-        const cl::Buffer out = device.allocate(count * sizeof(float));
-        kernel.setArg(0, in);
-        kernel.setArg(1, out);
-        kernel.setArg(2, static_cast<cl_uint>(count));
-        device.run(kernel, items_for(count, lanes), 1);
-        const std::vector<float> turns = device.download<float>(out, count);
+        const std::vector<float> turns = run_probe(device, "probe_turn", lanes, vectors, count, 1);
         double worst = 0;
         for (std::size_t i = exact.size(); i < count; ++i)
             worst = std::max(
@@ -135,14 +135,8 @@ TEST_CASE("frames are orthonormal for all normals", "[oclgrind]") {
     }
     const std::size_t count = normals.size() / 3;
     for (const int lanes : widths) {
-        cl::Kernel kernel(build_probes(device, lanes), "probe_frame");
-        const cl::Buffer in = device.upload<float>(normals);
-        const cl::Buffer out = device.allocate(6 * count * sizeof(float));
-        kernel.setArg(0, in);
-        kernel.setArg(1, out);
-        kernel.setArg(2, static_cast<cl_uint>(count));
-        device.run(kernel, items_for(count, lanes), 1);
-        const std::vector<float> values = device.download<float>(out, 6 * count);
+        const std::vector<float> values =
+            run_probe(device, "probe_frame", lanes, normals, count, 6);
         double worst = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const glm::dvec3 n(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
