@@ -68,15 +68,26 @@ std::size_t dealing_stride(std::size_t count) {
     return stride;
 }
 
+/// What the device keeps of a picture: its pixels, and a record for each work-item's tile.
+struct FilmExtent {
+    std::size_t pixels, tiles_x, tiles_y;
+
+    FilmExtent(const FrameData &frame, std::size_t tile)
+        : pixels(static_cast<std::size_t>(frame.width) * frame.height),
+          tiles_x((frame.width + tile - 1) / tile), tiles_y((frame.height + tile - 1) / tile) {}
+
+    [[nodiscard]] std::size_t tiles() const { return tiles_x * tiles_y; }
+    [[nodiscard]] std::size_t film_bytes() const { return pixels * sizeof(FilmPixel); }
+    [[nodiscard]] std::size_t counter_bytes() const { return tiles() * sizeof(ItemCounters); }
+    [[nodiscard]] std::size_t bytes() const { return film_bytes() + counter_bytes(); }
+};
+
 /// One render: the device's side of the film and the launches that fill it.
 class PathTracer {
 public:
     PathTracer(const DeviceEntry &entry, const FlatScene &flat, const RenderOptions &options)
         : entry_(entry), flat_(flat), options_(options),
-          pixels_(static_cast<std::size_t>(flat.frame.width) * flat.frame.height),
-          tile_(static_cast<std::size_t>(flat.config.TILE)),
-          tiles_x_((flat.frame.width + tile_ - 1) / tile_),
-          tiles_y_((flat.frame.height + tile_ - 1) / tile_),
+          extent_(flat.frame, static_cast<std::size_t>(flat.config.TILE)),
           group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group) {
         with_device("opening the device", [&] {
             context_ = cl::Context(entry.device);
@@ -109,7 +120,8 @@ private:
     const DeviceEntry &entry_;
     const FlatScene &flat_;
     const RenderOptions &options_;
-    std::size_t pixels_, tile_, tiles_x_, tiles_y_, group_;
+    FilmExtent extent_;
+    std::size_t group_;
     cl::Context context_;
     cl::CommandQueue queue_;
     std::future<BuiltKernel> compiling_;
@@ -164,26 +176,23 @@ void PathTracer::compile(RenderStats &stats) {
 }
 
 void PathTracer::upload(RenderStats &stats) {
-    const std::size_t film_bytes = pixels_ * sizeof(FilmPixel);
-    const std::size_t counter_bytes = tiles_x_ * tiles_y_ * sizeof(ItemCounters);
-    scene_ =
-        std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, film_bytes + counter_bytes);
+    scene_ = std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, extent_.bytes());
     with_device("clearing the film", [&] {
-        film_ = cl::Buffer(context_, CL_MEM_READ_WRITE, film_bytes);
-        counters_ = cl::Buffer(context_, CL_MEM_READ_WRITE, counter_bytes);
-        queue_.enqueueFillBuffer(film_, cl_uint{0}, 0, film_bytes);
-        queue_.enqueueFillBuffer(counters_, cl_uint{0}, 0, counter_bytes);
+        film_ = cl::Buffer(context_, CL_MEM_READ_WRITE, extent_.film_bytes());
+        counters_ = cl::Buffer(context_, CL_MEM_READ_WRITE, extent_.counter_bytes());
+        queue_.enqueueFillBuffer(film_, cl_uint{0}, 0, extent_.film_bytes());
+        queue_.enqueueFillBuffer(counters_, cl_uint{0}, 0, extent_.counter_bytes());
         launch_arguments_ = scene_->bind(kernel_);
         kernel_.setArg(launch_arguments_++, film_);
         kernel_.setArg(launch_arguments_++, counters_);
         if (options_.profile != nullptr) {
             recorder_ = std::make_unique<ProfileRecorder>(*options_.profile, context_, queue_,
-                                                          tiles_x_ * tiles_y_);
+                                                          extent_.tiles());
             kernel_.setArg(launch_arguments_++, recorder_->buffer());
         }
         queue_.finish();
     });
-    stats.device_bytes = scene_->bytes() + film_bytes + counter_bytes;
+    stats.device_bytes = scene_->bytes() + extent_.bytes();
     if (recorder_)
         stats.device_bytes += recorder_->bytes();
 }
@@ -219,8 +228,8 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
     const int first = pending.launch.first_block * CLR_BLOCK_SAMPLES;
     const int end = std::min(pending.launch.end_block * CLR_BLOCK_SAMPLES, spp);
     const double share =
-        static_cast<double>(pending.launch.item_count) / static_cast<double>(tiles_x_ * tiles_y_);
-    paths_done_ += share * static_cast<double>(pixels_) * (end - first);
+        static_cast<double>(pending.launch.item_count) / static_cast<double>(extent_.tiles());
+    paths_done_ += share * static_cast<double>(extent_.pixels) * (end - first);
     if (options_.on_progress)
         options_.on_progress(paths_done_);
 }
@@ -229,7 +238,7 @@ bool PathTracer::render(int spp, Stopwatch &watch, RenderStats &stats) {
     const int blocks = (spp + CLR_BLOCK_SAMPLES - 1) / CLR_BLOCK_SAMPLES;
     const std::size_t least_items =
         round_up(static_cast<std::size_t>(entry_.compute_units) * 4, group_);
-    LaunchPlan plan(tiles_x_, tiles_y_, blocks, flat_.config.FILTER == 3,
+    LaunchPlan plan(extent_.tiles_x, extent_.tiles_y, blocks, flat_.config.FILTER == 3,
                     static_cast<std::size_t>(options_.tile), options_.batch, least_items);
     std::deque<Pending> pending;
     bool stopped = false;
@@ -253,12 +262,11 @@ bool PathTracer::render(int spp, Stopwatch &watch, RenderStats &stats) {
 }
 
 void PathTracer::read(RenderResult &result, PixelFormat format) {
-    std::vector<FilmPixel> film(pixels_);
-    std::vector<ItemCounters> counters(tiles_x_ * tiles_y_);
+    std::vector<FilmPixel> film(extent_.pixels);
+    std::vector<ItemCounters> counters(extent_.tiles());
     with_device("reading the film", [&] {
-        queue_.enqueueReadBuffer(film_, CL_TRUE, 0, pixels_ * sizeof(FilmPixel), film.data());
-        queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, counters.size() * sizeof(ItemCounters),
-                                 counters.data());
+        queue_.enqueueReadBuffer(film_, CL_TRUE, 0, extent_.film_bytes(), film.data());
+        queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, extent_.counter_bytes(), counters.data());
     });
     const auto width = static_cast<int>(flat_.frame.width);
     const auto height = static_cast<int>(flat_.frame.height);
@@ -283,8 +291,7 @@ void PathTracer::complete_profile(const RenderStats &stats) {
     profile.config = flat_.config;
     profile.uploaded_bytes = static_cast<double>(scene_->bytes());
     profile.device_bytes = static_cast<double>(stats.device_bytes);
-    profile.downloaded_bytes += static_cast<double>(pixels_ * sizeof(FilmPixel) +
-                                                    tiles_x_ * tiles_y_ * sizeof(ItemCounters));
+    profile.downloaded_bytes += static_cast<double>(extent_.bytes());
     profile.peak = measure_peak(entry_, context_, queue_);
 }
 
@@ -303,11 +310,7 @@ FlattenOptions flatten_options(const RenderOptions &options) {
 std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
     FlatScene flat = flatten(scene, flatten_options(options));
     build_hierarchy(flat);
-    const auto tiles = [](std::size_t side) { return (side + cpu_tile - 1) / cpu_tile; };
-    const std::size_t width = flat.frame.width;
-    const std::size_t height = flat.frame.height;
-    return flat.bytes() + width * height * sizeof(FilmPixel) +
-           tiles(width) * tiles(height) * sizeof(ItemCounters);
+    return flat.bytes() + FilmExtent(flat.frame, cpu_tile).bytes();
 }
 
 RenderResult render_scene(const Scene &scene, const RenderOptions &options) {

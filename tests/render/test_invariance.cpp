@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include <unistd.h>
 
@@ -103,19 +102,15 @@ TEST_CASE("the number of light samples does not change the picture but for the n
 
 TEST_CASE("light and BSDF sampling alone and together find the same light of a sky") {
     // Brighter upwards and towards one side, without a sun, which BSDF sampling would hardly find.
-    constexpr int width = 64, height = 32;
+    Image sky{64, 32, 3, PixelType::f32, {}, {}};
+    for (int row = sky.height - 1; row >= 0; --row)
+        for (int column = 0; column < sky.width; ++column)
+            for (const float tint : {0.7f, 0.8f, 1.0f})
+                sky.f32.push_back(tint * (0.2f + 0.03f * static_cast<float>(row)) *
+                                  (column < sky.width / 2 ? 1.0f : 3.0f));
     const auto map = std::filesystem::temp_directory_path() /
                      ("clrender_sky_" + std::to_string(getpid()) + ".pfm");
-    std::ofstream file(map, std::ios::binary);
-    file << "PF\n" << width << ' ' << height << "\n-1\n";
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column)
-            for (const float tint : {0.7f, 0.8f, 1.0f}) {
-                const float value = tint * (0.2f + 0.03f * static_cast<float>(row)) *
-                                    (column < width / 2 ? 1.0f : 3.0f);
-                file.write(reinterpret_cast<const char *>(&value), sizeof(value));
-            }
-    file.close();
+    write_image(map.string(), sky);
     const Scene scene = scene_from_xml(fmt::format(
         R"(<integrator type="path"><integer name="max_depth" value="3"/></integrator>
         <sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
