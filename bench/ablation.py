@@ -14,9 +14,10 @@ import statistics
 import sys
 import tempfile
 
-from benchmark import FOLDER, need_numpy, prepare_scenes, size, words
+from benchmark import add_run_arguments, check_words, need_numpy, prepare_scenes, words
 from catalogue import TITLES
-from programs import BUILD, ROOT, Failed, available_cores, clrender_command, launch, use_cores
+from programs import ROOT, Failed, clrender_command, launch, use_cores
+from tables import markdown, publish
 
 # Names of kernels/shared/kernel_config.def by what they are about.
 GROUPS = {
@@ -94,14 +95,6 @@ def title(scene):
     return f"`{scene.name if scene == SPHERES else scene.stem}`"
 
 
-def row(cells):
-    return "| " + " | ".join(cells) + " |\n"
-
-
-def table(head, rows):
-    return row(head) + row(["---"] + ["---:"] * (len(head) - 1)) + "".join(map(row, rows))
-
-
 def report(measured, groups):
     """The tables; measured: scene -> its variants."""
     rows = []
@@ -112,8 +105,8 @@ def report(measured, groups):
                      f"{own.path:.0f}", f"{full.path:.0f}", f"**{full.path / own.path:.2f}**",
                      f"{own.rays:.2f}", f"{100 * skipped:.1f}%"])
     text = ("The kernel that can do everything against the one made for the scene:\n\n" +
-            table(["scene", "compile, s", "everything", "a path, ns", "everything",
-                   "times faster", "rays a path", "rays skipped"], rows))
+            markdown(["scene", "compile, s", "everything", "a path, ns", "everything",
+                      "times faster", "rays a path", "rays skipped"], rows))
     rows = []
     for name in groups:
         cells = [name]
@@ -126,7 +119,7 @@ def report(measured, groups):
         text += ("\nA group of features compiled in beside what the scene needs: time a path over "
                  "that of the\nkernel made for the scene, and seconds more to compile; -: the scene "
                  "needs all of it.\n\n" +
-                 table(["group", *map(title, measured)], rows))
+                 markdown(["group", *map(title, measured)], rows))
     return text
 
 
@@ -140,15 +133,9 @@ def parse():
                         help="these groups of features (all; '' for none): " + ", ".join(GROUPS))
     parser.add_argument("--rounds", type=int, default=3, help="of which the medians count (3)")
     parser.add_argument("--spp", type=int, default=64, help="samples a pixel (64)")
-    parser.add_argument("--resolution", type=size, default=(320, 240), metavar="WxH",
-                        help="(320x240)")
-    parser.add_argument("--cores", type=int, default=available_cores(), help="(all)")
-    parser.add_argument("--timeout", type=float, default=600, help="seconds for one render (600)")
+    add_run_arguments(parser, resolution=(320, 240), timeout=600)
     arguments = parser.parse_args()
-    for name, there in (("only", known), ("groups", GROUPS)):
-        for word in getattr(arguments, name):
-            if word not in there:
-                parser.error(f"--{name}: there is no {word}; known: {', '.join(there)}")
+    check_words(parser, arguments, {"only": known, "groups": GROUPS})
     return arguments
 
 
@@ -166,11 +153,7 @@ def main():
         measured = {scene: measure(scene, arguments.groups, arguments) for scene in scenes}
     except Failed as failure:
         sys.exit(f"error: {failure}")
-    text = report(measured, arguments.groups)
-    folder = FOLDER / "results"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "ablation.md").write_text(text)
-    print(f"\n{text}\nWritten to {(folder / 'ablation.md').relative_to(BUILD.parent)}")
+    publish(report(measured, arguments.groups), "ablation.md")
     return 0
 
 

@@ -17,8 +17,8 @@ from catalogue import TITLES
 from programs import BUILD, available_cores, use_cores
 from renderers import LABELS, Settings, find_llvm, installed
 from session import Session
+from tables import FOLDER
 
-FOLDER = BUILD / "bench"
 QUICK = {"renderers": ["clrender", "mitsuba-llvm"], "spp": [16, 64], "seeds": 3, "starts": 1}
 FULL = {"renderers": list(LABELS), "spp": [4, 16, 64, 256], "seeds": 4, "starts": 2}
 QUICK_SECONDS = 255  # for the rounds; scenes, start-up and tables take the rest of five minutes
@@ -37,6 +37,30 @@ def size(text):
     return width, height
 
 
+def add_run_arguments(parser, resolution, timeout):
+    """What all benchmarks of scenes can be told of a run, with these defaults."""
+    text = "x".join(map(str, resolution))
+    parser.add_argument("--resolution", type=size, default=resolution, metavar="WxH",
+                        help=f"({text})")
+    parser.add_argument("--cores", type=int, default=available_cores(),
+                        help="for each renderer (all)")
+    parser.add_argument("--timeout", type=float, default=timeout,
+                        help=f"seconds for one process ({timeout})")
+
+
+def check_words(parser, arguments, known):
+    """Ends where an argument names what there is not; known: argument -> its words."""
+    for name, there in known.items():
+        for word in getattr(arguments, name):
+            if word not in there:
+                parser.error(f"--{name}: there is no {word}; known: {', '.join(there)}")
+
+
+def check_seeds(parser, arguments):
+    if arguments.seeds < 2:
+        parser.error("--seeds: the error is the variance between at least 2")
+
+
 def parse():
     parser = argparse.ArgumentParser(prog="scripts/bench", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -50,18 +74,13 @@ def parse():
     parser.add_argument("--spp", type=counts, metavar="N,...", help="sample counts (4,16,64,256)")
     parser.add_argument("--seeds", type=int, help="independent runs of each, at least 2 (4)")
     parser.add_argument("--starts", type=int, help="warm and cold starts of each (2)")
-    parser.add_argument("--resolution", type=size, default=(320, 240), metavar="WxH",
-                        help="(320x240)")
     parser.add_argument("--max-depth", type=int, default=10, help="longest path in segments (10)")
     parser.add_argument("--rr-depth", type=int, default=1000000,
                         help="depth from which roulette ends paths, for everyone (never)")
     parser.add_argument("--mitsuba-sampler", default="multijitter", metavar="NAME",
                         choices=["multijitter", "independent", "orthogonal", "stratified"],
                         help="(multijitter), its best; independent, orthogonal, stratified")
-    parser.add_argument("--cores", type=int, default=available_cores(),
-                        help="for each renderer (all)")
-    parser.add_argument("--timeout", type=float, default=1800,
-                        help="seconds for one process (1800)")
+    add_run_arguments(parser, resolution=(320, 240), timeout=1800)
     parser.add_argument("--fresh", action="store_true",
                         help="forgets what has been measured before")
     parser.add_argument("--report", action="store_true",
@@ -72,12 +91,8 @@ def parse():
     for name, value in usual.items():
         if getattr(arguments, name) is None:
             setattr(arguments, name, value)
-    for name, known in (("only", TITLES), ("renderers", LABELS)):
-        for word in getattr(arguments, name):
-            if word not in known:
-                parser.error(f"--{name}: there is no {word}; known: {' '.join(known)}")
-    if arguments.seeds < 2:
-        parser.error("--seeds: the error is the variance between at least 2")
+    check_words(parser, arguments, {"only": TITLES, "renderers": LABELS})
+    check_seeds(parser, arguments)
     return arguments
 
 

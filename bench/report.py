@@ -8,6 +8,7 @@ import re
 import curves
 from noise import TRIMMED
 from summary import TARGETS
+from tables import markdown
 
 
 def figure(value, digits=3):
@@ -25,12 +26,6 @@ def seconds(value):
     if value is None:
         return "–"
     return f"*~{figure(value.seconds)}*" if value.extrapolated else figure(value.seconds)
-
-
-def markdown(header, rows):
-    """A table whose first column is text and whose others are numbers."""
-    lines = [header, ["---"] + ["---:"] * (len(header) - 1), *rows]
-    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
 def machine(cores):

@@ -8,14 +8,16 @@ Wants an idle machine, and about a quarter of an hour.
 
 import argparse
 import json
+import pathlib
 import statistics
 import sys
 import tempfile
-import pathlib
 
-from benchmark import FOLDER, need_numpy, prepare_scenes, size, words
+from benchmark import (add_run_arguments, check_seeds, check_words, need_numpy, prepare_scenes,
+                       words)
 from catalogue import TITLES
-from programs import BUILD, Failed, available_cores, clrender_command, launch, use_cores
+from programs import Failed, clrender_command, launch, use_cores
+from tables import markdown, publish
 
 OWN = "as it is"
 VARIANTS = {
@@ -40,7 +42,7 @@ class Variant:
         import noise
         picture, stats = self.folder / "picture.pfm", self.folder / "stats.json"
         launch(clrender_command(self.scene, picture, stats, "-s", spp, "--seed", seed,
-                                *self.options), self.timeout, {})
+                                *self.options), self.timeout)
         self.pictures.append(noise.read_picture(picture))
         self.seconds.append(json.loads(stats.read_text())["seconds"]["render"])
 
@@ -73,22 +75,16 @@ def measure(scene, arguments, folder):
     return variants
 
 
-def row(cells):
-    return "| " + " | ".join(cells) + " |\n"
-
-
 def report(measured, names):
     """The table; measured: scene -> its variants."""
-    text = row(["", *(f"`{scene.stem}`" for scene in measured)])
-    text += row(["---"] + ["---:"] * len(measured))
-    text += row(["relMSE " + OWN, *(f"{v[OWN].error:.2e}" for v in measured.values())])
+    rows = [["relMSE " + OWN, *(f"{v[OWN].error:.2e}" for v in measured.values())]]
     for name in names:
         cells = []
         for variants in measured.values():
             error = variants[name].error / variants[OWN].error
             cells.append(f"{error:.2f}, {error * variants[name].time / variants[OWN].time:.2f}")
-        text += row([name, *cells])
-    return text
+        rows.append([name, *cells])
+    return markdown(["", *(f"`{scene.stem}`" for scene in measured)], rows)
 
 
 def parse():
@@ -100,17 +96,10 @@ def parse():
                         help="these: " + ", ".join(VARIANTS))
     parser.add_argument("--seeds", type=int, default=4, help="at least 2 (4)")
     parser.add_argument("--spp", type=int, default=64, help="samples a pixel (64)")
-    parser.add_argument("--resolution", type=size, default=(160, 120), metavar="WxH",
-                        help="(160x120)")
-    parser.add_argument("--cores", type=int, default=available_cores(), help="(all)")
-    parser.add_argument("--timeout", type=float, default=600, help="seconds for one render (600)")
+    add_run_arguments(parser, resolution=(160, 120), timeout=600)
     arguments = parser.parse_args()
-    for name, there in (("only", TITLES), ("variants", VARIANTS)):
-        for word in getattr(arguments, name):
-            if word not in there:
-                parser.error(f"--{name}: there is no {word}; known: {', '.join(there)}")
-    if arguments.seeds < 2:
-        parser.error("--seeds: the error is the variance between at least 2")
+    check_words(parser, arguments, {"only": TITLES, "variants": VARIANTS})
+    check_seeds(parser, arguments)
     return arguments
 
 
@@ -127,10 +116,7 @@ def main():
     text = ("Over the program's own choice: relMSE at equal samples, at equal time (relMSE times "
             f"seconds);\n{arguments.spp} samples a pixel, {arguments.seeds} seeds.\n\n" +
             report(measured, arguments.variants))
-    folder = FOLDER / "results"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "sampling.md").write_text(text)
-    print(f"\n{text}\nWritten to {(folder / 'sampling.md').relative_to(BUILD.parent)}")
+    publish(text, "sampling.md")
     return 0
 
 
