@@ -64,11 +64,13 @@ double shadow_occupancy(const ProfileCounts &counts, int lanes) {
 }
 
 double path_nodes_per_ray(const ProfileCounts &counts) {
-    return ratio(counts[PROFILE_PATH_NODES], counts[PROFILE_PATH_RAYS]);
+    return ratio(counts[PROFILE_PATH_NODES] + counts[PROFILE_PACKET_NODES],
+                 counts[PROFILE_PATH_RAYS]);
 }
 
 double path_blocks_per_ray(const ProfileCounts &counts) {
-    return ratio(counts[PROFILE_PATH_TRIANGLE_BLOCKS] + counts[PROFILE_PATH_SPHERE_BLOCKS],
+    return ratio(counts[PROFILE_PATH_TRIANGLE_BLOCKS] + counts[PROFILE_PATH_SPHERE_BLOCKS] +
+                     counts[PROFILE_PACKET_TRIANGLE_BLOCKS] + counts[PROFILE_PACKET_SPHERE_BLOCKS],
                  counts[PROFILE_PATH_RAYS]);
 }
 
@@ -81,24 +83,46 @@ double shadow_blocks_per_ray(const ProfileCounts &counts) {
                  counts[PROFILE_SHADOW_RAYS]);
 }
 
+namespace {
+
+/// Visits of nodes and blocks, by all rays; `weight` is what a packet's visit counts.
+struct TreeVisits {
+    double nodes, triangle_blocks, sphere_blocks;
+};
+
+TreeVisits tree_visits(const ProfileCounts &c, double weight) {
+    return {c[PROFILE_PATH_NODES] + c[PROFILE_SHADOW_NODES] + weight * c[PROFILE_PACKET_NODES],
+            c[PROFILE_PATH_TRIANGLE_BLOCKS] + c[PROFILE_SHADOW_TRIANGLE_BLOCKS] +
+                weight * c[PROFILE_PACKET_TRIANGLE_BLOCKS],
+            c[PROFILE_PATH_SPHERE_BLOCKS] + c[PROFILE_SHADOW_SPHERE_BLOCKS] +
+                weight * c[PROFILE_PACKET_SPHERE_BLOCKS]};
+}
+
+} // namespace
+
+double tree_nodes(const ProfileCounts &counts) {
+    return tree_visits(counts, 1).nodes;
+}
+
+double tree_blocks(const ProfileCounts &counts) {
+    const TreeVisits visits = tree_visits(counts, 1);
+    return visits.triangle_blocks + visits.sphere_blocks;
+}
+
 double tree_bytes(const ProfileCounts &counts) {
-    return (counts[PROFILE_PATH_NODES] + counts[PROFILE_SHADOW_NODES]) * sizeof(BvhNode) +
-           (counts[PROFILE_PATH_TRIANGLE_BLOCKS] + counts[PROFILE_SHADOW_TRIANGLE_BLOCKS]) *
-               sizeof(TriangleBlock) +
-           (counts[PROFILE_PATH_SPHERE_BLOCKS] + counts[PROFILE_SHADOW_SPHERE_BLOCKS]) *
-               sizeof(SphereBlock);
+    const TreeVisits visits = tree_visits(counts, 1);
+    return visits.nodes * sizeof(BvhNode) + visits.triangle_blocks * sizeof(TriangleBlock) +
+           visits.sphere_blocks * sizeof(SphereBlock);
 }
 
 double float_operations(const ProfileCounts &counts, const KernelConfig &config) {
     const double lane_tests =
         config.SPHERE_COUNT * lane_sphere_flops + config.PLANAR_COUNT * lane_planar_flops;
-    return (counts[PROFILE_PATH_NODES] + counts[PROFILE_SHADOW_NODES]) * node_flops +
-           (counts[PROFILE_PATH_TRIANGLE_BLOCKS] + counts[PROFILE_SHADOW_TRIANGLE_BLOCKS]) *
-               triangle_block_flops +
-           (counts[PROFILE_PATH_SPHERE_BLOCKS] + counts[PROFILE_SHADOW_SPHERE_BLOCKS]) *
-               sphere_block_flops +
-           total_rays(counts) * lane_tests + counts[PROFILE_CAMERA_RAYS] * camera_flops +
-           counts[PROFILE_BOUNCES] * bounce_flops + counts[PROFILE_SHADOW_RAYS] * light_flops;
+    const TreeVisits visits = tree_visits(counts, config.LANES);
+    return visits.nodes * node_flops + visits.triangle_blocks * triangle_block_flops +
+           visits.sphere_blocks * sphere_block_flops + total_rays(counts) * lane_tests +
+           counts[PROFILE_CAMERA_RAYS] * camera_flops + counts[PROFILE_BOUNCES] * bounce_flops +
+           counts[PROFILE_SHADOW_RAYS] * light_flops;
 }
 
 } // namespace clrender

@@ -84,13 +84,17 @@ double total_rays(const ProfileCounts &counts);
 double lane_occupancy(const ProfileCounts &counts, int lanes);
 /// The same in those iterations where any lane traces a shadow ray; 0 without shadow rays.
 double shadow_occupancy(const ProfileCounts &counts, int lanes);
-/// Nodes or blocks of one kind of ray, a ray; 0 without such rays.
+/// Nodes or blocks of one kind of ray, a ray; 0 without such rays. What the rays of a packet visit
+/// together counts once.
 double path_nodes_per_ray(const ProfileCounts &counts);
 double path_blocks_per_ray(const ProfileCounts &counts);
 double shadow_nodes_per_ray(const ProfileCounts &counts);
 double shadow_blocks_per_ray(const ProfileCounts &counts);
 
-/// Bytes of the nodes and blocks visited. An estimate: most of them come from caches.
+/// Nodes and blocks that rays of all kinds visited, and their bytes. An estimate: most of them come
+/// from caches.
+double tree_nodes(const ProfileCounts &counts);
+double tree_blocks(const ProfileCounts &counts);
 double tree_bytes(const ProfileCounts &counts);
 /// Float operations, estimated by a constant for each test and each bounce (docs/manual.md).
 double float_operations(const ProfileCounts &counts, const KernelConfig &config);

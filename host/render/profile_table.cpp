@@ -36,21 +36,18 @@ constexpr const char *header =
 std::string row(const Profile &profile, const std::string &name, const ProfileSums &sums) {
     const ProfileCounts &c = sums.counts;
     const double rays = total_rays(c);
-    const double nodes = c[PROFILE_PATH_NODES] + c[PROFILE_SHADOW_NODES];
-    const double blocks = c[PROFILE_PATH_TRIANGLE_BLOCKS] + c[PROFILE_PATH_SPHERE_BLOCKS] +
-                          c[PROFILE_SHADOW_TRIANGLE_BLOCKS] + c[PROFILE_SHADOW_SPHERE_BLOCKS];
     const double seconds = sums.device_seconds;
-    return fmt::format("{:<5}{:>11}{:>10.0f}{:>10.4f}{:>9.4f}{:>10.4f} |{:>8.3f}{:>8.3f}{:>8.3f} "
-                       "|{:>7.2f}{:>8.2f} "
-                       "|{:>6.1f} |{:>6.1f}{:>7.1f}\n",
-                       name, fmt::format("{}-{}", sums.first_sample, sums.end_sample - 1),
-                       sums.launches, seconds, sums.gap_seconds, sums.queue_seconds,
-                       c[PROFILE_CAMERA_RAYS] * 1e-6,
-                       (c[PROFILE_PATH_RAYS] - c[PROFILE_CAMERA_RAYS]) * 1e-6,
-                       c[PROFILE_SHADOW_RAYS] * 1e-6, rays > 0 ? nodes / rays : 0,
-                       rays > 0 ? blocks / rays : 0, 100 * lane_occupancy(c, profile.config.LANES),
-                       percent(float_operations(c, profile.config), seconds * profile.peak.flops),
-                       percent(tree_bytes(c), seconds * profile.peak.bandwidth));
+    return fmt::format(
+        "{:<5}{:>11}{:>10.0f}{:>10.4f}{:>9.4f}{:>10.4f} |{:>8.3f}{:>8.3f}{:>8.3f} "
+        "|{:>7.2f}{:>8.2f} "
+        "|{:>6.1f} |{:>6.1f}{:>7.1f}\n",
+        name, fmt::format("{}-{}", sums.first_sample, sums.end_sample - 1), sums.launches, seconds,
+        sums.gap_seconds, sums.queue_seconds, c[PROFILE_CAMERA_RAYS] * 1e-6,
+        (c[PROFILE_PATH_RAYS] - c[PROFILE_CAMERA_RAYS]) * 1e-6, c[PROFILE_SHADOW_RAYS] * 1e-6,
+        rays > 0 ? tree_nodes(c) / rays : 0, rays > 0 ? tree_blocks(c) / rays : 0,
+        100 * lane_occupancy(c, profile.config.LANES),
+        percent(float_operations(c, profile.config), seconds * profile.peak.flops),
+        percent(tree_bytes(c), seconds * profile.peak.bandwidth));
 }
 
 std::string rows(const Profile &profile) {
@@ -80,6 +77,10 @@ std::string details(const Profile &profile, const ProfileSums &all) {
                         path_nodes_per_ray(c), path_blocks_per_ray(c));
     text += fmt::format("shadow             {:.2f} nodes and {:.2f} blocks a ray\n",
                         shadow_nodes_per_ray(c), shadow_blocks_per_ray(c));
+    if (c[PROFILE_PACKETS] > 0)
+        text += fmt::format("packets            {:.1f}% of the camera rays, {:.1f} in each\n",
+                            percent(c[PROFILE_PACKET_RAYS], c[PROFILE_CAMERA_RAYS]),
+                            c[PROFILE_PACKET_RAYS] / c[PROFILE_PACKETS]);
     text += fmt::format("lanes alive        {:.1f}% of {} in the bounce loop, {:.1f}% where shadow "
                         "rays are traced\n",
                         100 * lane_occupancy(c, lanes), lanes, 100 * shadow_occupancy(c, lanes));

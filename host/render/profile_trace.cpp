@@ -118,6 +118,8 @@ Json summary(const Profile &profile) {
     json["camera_rays"] = c[PROFILE_CAMERA_RAYS];
     json["bounce_rays"] = c[PROFILE_PATH_RAYS] - c[PROFILE_CAMERA_RAYS];
     json["shadow_rays"] = c[PROFILE_SHADOW_RAYS];
+    json["packets"] = c[PROFILE_PACKETS];
+    json["packet_rays"] = c[PROFILE_PACKET_RAYS];
     json["lanes_alive"] = lane_occupancy(c, profile.config.LANES);
     json["shadow_lanes_alive"] = shadow_occupancy(c, profile.config.LANES);
     json["path_nodes_per_ray"] = path_nodes_per_ray(c);

@@ -4,6 +4,9 @@
 
 #include "shared/shared_types.h"
 
+/* As a hit's prim: the ray was not traced, for the rays beside it go other ways. */
+#define BVH_PROBE_NOT_TRACED 0xfffffffeu
+
 CLR_SHARED_BEGIN
 
 typedef struct CLR_ALIGNED(32) BvhProbeRay {

@@ -21,6 +21,11 @@ enum ProfileCounter {
     PROFILE_SHADOW_NODES,
     PROFILE_SHADOW_TRIANGLE_BLOCKS,
     PROFILE_SHADOW_SPHERE_BLOCKS,
+    PROFILE_PACKETS,      /* camera rays that were traced all at once, and how many they were: */
+    PROFILE_PACKET_RAYS,  /* not in the nodes and blocks of the single ones above */
+    PROFILE_PACKET_NODES, /* once for all rays of a packet */
+    PROFILE_PACKET_TRIANGLE_BLOCKS,
+    PROFILE_PACKET_SPHERE_BLOCKS,
     PROFILE_COUNTERS
 };
 
@@ -28,7 +33,7 @@ enum ProfileCounter {
 typedef struct {
     uint count[PROFILE_COUNTERS][2];
 } ProfileCounters;
-CLR_STATIC_SIZE(ProfileCounters, 96);
+CLR_STATIC_SIZE(ProfileCounters, 136);
 
 CLR_SHARED_END
 #endif

@@ -20,6 +20,7 @@ struct Probe {
     cl::Program program =
         device.build("probes/bvh_probes.cl", "-DLANES=" + std::to_string(probe_lanes));
     cl::Kernel closest{program, "probe_bvh_closest"};
+    cl::Kernel packet{program, "probe_bvh_packet"};
     cl::Kernel any{program, "probe_bvh_any"};
 };
 
@@ -119,6 +120,10 @@ glm::vec3 random_direction(Random &random) {
 
 std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
     return run(the_probe().closest, bvh, rays);
+}
+
+std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
+    return run(the_probe().packet, bvh, rays);
 }
 
 std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {

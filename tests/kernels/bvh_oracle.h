@@ -35,8 +35,11 @@ BvhProbeRay probe_ray(const glm::vec3 &o, const glm::vec3 &d, float t_max = INFI
 glm::vec3 random_direction(Random &random);
 glm::vec3 random_point(Random &random);
 
-/// Both kernels over a tree, on the tests' device.
+/// The kernels over a tree, on the tests' device.
 std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
+/// The same by packets; rays that go another way than those beside them are not traced
+/// (BVH_PROBE_NOT_TRACED).
+std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
 std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
 
 /// Where the line of a ray meets a primitive, in double: at `t`, and `margin` inside (the least

@@ -3,6 +3,7 @@
 #include "bvh_oracle.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -174,6 +175,45 @@ TEST_CASE("the hit does not depend on the tree, to the bit") {
         const bool higher_twin = hits_a[i].prim >= 100 && hits_a[i].prim < 150;
         REQUIRE_FALSE(higher_twin);
     }
+}
+
+TEST_CASE("a packet finds what its rays find one by one, to the bit", "[oclgrind]") {
+    Random random(12);
+    BvhScene scene = random_scene(random, 3000, 300);
+    for (int i = 0; i < 50; ++i) { // twins: the lower prim id wins
+        scene.triangles[std::size_t(i + 100)] = scene.triangles[std::size_t(i)];
+    }
+    const Bvh bvh = build_bvh(scene.triangles, scene.spheres);
+    Rays rays = awkward_rays(scene, random, rays_of(100000));
+    // Side by side those that may share a packet; each tenth goes another way, or nowhere.
+    const auto way = [](const BvhProbeRay &ray) {
+        int longest = 0;
+        for (int axis = 1; axis < 3; ++axis) {
+            longest = std::abs(ray.d[axis]) > std::abs(ray.d[longest]) ? axis : longest;
+        }
+        return std::array{std::signbit(ray.d[0]), std::signbit(ray.d[1]), std::signbit(ray.d[2]),
+                          longest == 1, longest == 2};
+    };
+    std::sort(rays.begin(), rays.end(),
+              [&](const BvhProbeRay &a, const BvhProbeRay &b) { return way(a) < way(b); });
+    for (std::size_t i = 0; i < rays.size(); i += 10) {
+        rays[i] = i % 20 == 0 ? probe_ray(random_point(random), random_direction(random))
+                              : probe_ray(random_point(random), glm::vec3(0.0f));
+    }
+    const auto apart = probe_closest(bvh, rays);
+    const auto packed = probe_packets(bvh, rays);
+    std::size_t traced = 0, found = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (packed[i].prim != BVH_PROBE_NOT_TRACED) {
+            INFO("ray " << i << ": " << apart[i].prim << " at " << apart[i].t << ", "
+                        << packed[i].prim << " at " << packed[i].t);
+            REQUIRE(same_bits(apart[i], packed[i]));
+            ++traced;
+            found += apart[i].prim != BVH_NO_PRIM ? 1 : 0;
+        }
+    }
+    CHECK(traced > rays.size() / 3);
+    CHECK(found > rays.size() / 10);
 }
 
 TEST_CASE("the weights of a hit give the point of the hit") {

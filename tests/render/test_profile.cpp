@@ -70,7 +70,12 @@ TEST_CASE("a profile does not change a bit of the picture, and its counts agree 
         CHECK(path_nodes_per_ray(counts) > 0);
         CHECK(path_blocks_per_ray(counts) > 0);
         CHECK(shadow_nodes_per_ray(counts) > 0);
-        CHECK(counts[PROFILE_PATH_SPHERE_BLOCKS] == 0);
+        CHECK(counts[PROFILE_PATH_SPHERE_BLOCKS] + counts[PROFILE_PACKET_SPHERE_BLOCKS] == 0);
+        CHECK(counts[PROFILE_PACKET_RAYS] <= counts[PROFILE_CAMERA_RAYS]);
+        CHECK(counts[PROFILE_PACKET_RAYS] <= lanes * counts[PROFILE_PACKETS]);
+        // The scene's camera rays start together, tile by tile.
+        CHECK((counts[PROFILE_PACKETS] > 0) == (lanes >= 8));
+        CHECK((counts[PROFILE_PACKET_NODES] > 0) == (lanes >= 8));
         CHECK(tree_bytes(counts) > 0);
         CHECK(float_operations(counts, profile.config) > 0);
         CHECK(profile.peak.flops > 0);
@@ -123,7 +128,7 @@ TEST_CASE("without the tree every ray visits every block and no node") {
     const RenderResult profiled = render(&profile, 0, true);
     CHECK(profiled.image.f32 == plain.image.f32);
     const ProfileCounts counts = all_counts(profile);
-    CHECK(counts[PROFILE_PATH_NODES] + counts[PROFILE_SHADOW_NODES] == 0);
+    CHECK(tree_nodes(counts) == 0);
     const double blocks = path_blocks_per_ray(counts);
     CHECK(blocks > 0);
     CHECK(blocks == std::floor(blocks));
