@@ -5,8 +5,10 @@
             whose folder --prototype names (lanes_spheres.cpp, .cl), both at the same width
   mesh      the benchmark's scene of that name, a mesh of 70 thousand triangles in a box, against
             Mitsuba 3 (llvm_ad_rgb); needs a Python with mitsuba and numpy, see scripts/bench
+  materials the benchmark's glass scene against itself with one of its materials on everything: what
+            lanes of different materials cost each other; the bar is 1.5 times the dearest one
 
-Both programs take turns; the medians count. Only rendering is timed: no reading, building or
+The programs or scenes take turns; the medians count. Only rendering is timed: no reading, building or
 compiling. What is not there is left out, and said. scripts/bench measures more: error against time.
 """
 
@@ -18,6 +20,7 @@ import shutil
 import statistics
 import sys
 import tempfile
+import xml.etree.ElementTree as xml
 
 from programs import (BENCH, BUILD, ROOT, SHARED, available_cores, clrender_rate, peer_python, run,
                       use_cores)
@@ -32,7 +35,7 @@ def native_lanes():
     return 16 if "avx512f" in flags else 8 if "avx2" in flags else 4
 
 
-def compare(title, rounds, ours, peer_name, peer):
+def compare(title, rounds, bar, ours, peer_name, peer):
     """Lets both take turns, prints every figure, the medians and their ratio."""
     print(f"{title}: million paths a second")
     print(f"  {'round':8}{'clrender':>12}{peer_name:>24}")
@@ -43,7 +46,7 @@ def compare(title, rounds, ours, peer_name, peer):
         print(f"  {number:<8}{figures[-1][0]:12.3f}{figures[-1][1]:24.3f}", flush=True)
     mine, theirs = (statistics.median(column) for column in zip(*figures))
     print(f"  {'median':8}{mine:12.3f}{theirs:24.3f}")
-    print(f"  clrender / {peer_name}: {mine / theirs:.2f} (the bar is 1)\n", flush=True)
+    print(f"  clrender / {peer_name}: {mine / theirs:.2f} (the bar is {bar})\n", flush=True)
 
 
 def spheres(arguments):
@@ -74,7 +77,8 @@ def spheres(arguments):
                                  "-s", spp, "--max-depth", depth, "--rr-depth", 1000000,
                                  "--lanes", lanes)
 
-        compare(f"spheres.xml, {lanes} lanes", arguments.rounds, clrender, "prototype", prototype)
+        compare(f"spheres.xml, {lanes} lanes", arguments.rounds, 1.3, clrender, "prototype",
+                prototype)
 
 
 def mesh(arguments):
@@ -96,13 +100,51 @@ def mesh(arguments):
     def clrender():
         return clrender_rate(scene, WORK, "-s", spp)
 
-    compare("A mesh in a box", arguments.rounds, clrender, "Mitsuba llvm_ad_rgb", mitsuba)
+    compare("A mesh in a box", arguments.rounds, 1, clrender, "Mitsuba llvm_ad_rgb", mitsuba)
+
+
+def of_one_material(scene, kind, written):
+    """The scene with its first material of this type on all of its shapes."""
+    tree = xml.parse(scene)
+    root = tree.getroot()
+    materials = root.findall("bsdf")
+    parts = list(next(material for material in materials if material.get("type") == kind))
+    for material in materials:
+        material[:] = parts
+        material.set("type", kind)
+    tree.write(written)
+
+
+def materials(arguments):
+    python = peer_python()
+    if not python:
+        print("materials: left out, there is no Python with numpy (scripts/bench --install-peers)\n")
+        return
+    run([python, BENCH / "make_scenes.py", WORK, "glass"])
+    mixed, spp = WORK / "glass.xml", 64
+    kinds = ["diffuse", "conductor", "dielectric"]
+    scenes = {kind: WORK / f"glass_{kind}.xml" for kind in kinds}
+    for kind, scene in scenes.items():
+        of_one_material(mixed, kind, scene)
+    scenes["mixed"] = mixed
+    print("The glass scene with one material on everything, and as it is: seconds a million paths")
+    print(f"  {'round':8}" + "".join(f"{name:>12}" for name in scenes))
+    for scene in scenes.values():
+        clrender_rate(scene, WORK, "-s", spp)  # fills the kernel cache
+    rounds = []
+    for number in range(1, arguments.rounds + 1):
+        rounds.append([1 / clrender_rate(scene, WORK, "-s", spp) for scene in scenes.values()])
+        print(f"  {number:<8}" + "".join(f"{figure:12.4f}" for figure in rounds[-1]), flush=True)
+    medians = [statistics.median(column) for column in zip(*rounds)]
+    print(f"  {'median':8}" + "".join(f"{figure:12.4f}" for figure in medians))
+    print(f"  mixed / dearest: {medians[-1] / max(medians[:-1]):.2f} (the bar is 1.5)\n", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bars", nargs="*", choices=["spheres", "mesh", []], help="default: both")
+    parser.add_argument("bars", nargs="*", choices=["spheres", "mesh", "materials", []],
+                        help="default: all")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--lanes", type=int, choices=[1, 8, 16], help="default: this processor's")
     parser.add_argument("--prototype", type=pathlib.Path, default=SHARED / "prototypes")
@@ -110,7 +152,7 @@ def main():
 
     use_cores(available_cores())
     WORK.mkdir(parents=True, exist_ok=True)
-    for name, measure in (("spheres", spheres), ("mesh", mesh)):
+    for name, measure in (("spheres", spheres), ("mesh", mesh), ("materials", materials)):
         if not arguments.bars or name in arguments.bars:
             measure(arguments)
 
