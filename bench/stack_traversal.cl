@@ -1,6 +1,6 @@
 /* What the stackless traversal of bvh.clh is compared with: the same tree, boxes and blocks, but
    the children that a ray has still to visit lie on a stack of its own, with their distances, so
-   that no box is tested twice. For the benchmark alone; one ray a work-item, width 1. */
+   that no box is tested twice. For the benchmark alone. */
 
 #include "probes/probe_rays.clh"
 
@@ -25,10 +25,12 @@ static inline uint stack_push(uint *children, float *entries, uint top,
     return top;
 }
 
-static inline void stack_closest(__global const BvhNode *nodes,
-                                 __global const TriangleBlock *triangles,
-                                 __global const SphereBlock *spheres, const BvhRay *ray,
-                                 BvhHit *hit) {
+/* As bvh_closest. */
+static inline int stack_closest(__global const BvhNode *nodes,
+                                __global const TriangleBlock *triangles,
+                                __global const SphereBlock *spheres, const BvhRay *ray,
+                                BvhHit *result) {
+    BvhHit hit = {bvh_float_below(result->t), 0.0f, 0.0f, BVH_NO_PRIM, 0u};
     uint children[STACK_SIZE];
     float entries[STACK_SIZE];
     children[0] = bvh_child(BVH_CHILD_INNER, 0u);
@@ -36,22 +38,29 @@ static inline void stack_closest(__global const BvhNode *nodes,
     uint top = 1u;
     while (top != 0u) {
         const uint child = children[--top];
-        if (entries[top] > hit->t) {
+        if (entries[top] > hit.t) {
             continue;
         }
         if (bvh_child_kind(child) == BVH_CHILD_INNER) {
             __global const BvhNode *node = nodes + bvh_child_index(child);
             float8 entry;
-            const uint bits = bvh_mask_bits(bvh_meet_boxes(node, ray, hit->t, &entry));
+            const uint bits = bvh_mask_bits(bvh_meet_boxes(node, ray, hit.t, &entry));
             top = stack_push(children, entries, top, node, bits, entry);
         } else {
-            bvh_visit_block(triangles, spheres, child, ray, hit);
+            bvh_visit_block(triangles, spheres, child, ray, &hit);
         }
     }
+    if (hit.prim == BVH_NO_PRIM) {
+        return 0;
+    }
+    *result = hit;
+    return 1;
 }
 
+/* As bvh_any. */
 static inline int stack_any(__global const BvhNode *nodes, __global const TriangleBlock *triangles,
-                            __global const SphereBlock *spheres, const BvhRay *ray, float t_end) {
+                            __global const SphereBlock *spheres, const BvhRay *ray, float t_max) {
+    const float t_end = bvh_float_below(t_max);
     uint children[STACK_SIZE];
     children[0] = bvh_child(BVH_CHILD_INNER, 0u);
     uint top = 1u;
@@ -71,50 +80,5 @@ static inline int stack_any(__global const BvhNode *nodes, __global const Triang
     return 0;
 }
 
-__kernel void bench_stack_closest(__global const BvhNode *nodes,
-                                  __global const TriangleBlock *triangles,
-                                  __global const SphereBlock *spheres,
-                                  __global const BvhProbeRay *rays, __global BvhProbeHit *hits,
-                                  uint count) {
-    const uint first = (uint)get_global_id(0) * LANES;
-    if (first >= count) {
-        return;
-    }
-    BvhRays prepared;
-    const uint valid = probe_rays(nodes, rays, first, count, &prepared);
-    for (uint i = 0u; i < LANES && first + i < count; ++i) {
-        const float t_max = rays[first + i].t_max;
-        BvhHit hit;
-        hit.t = bvh_float_below(t_max);
-        hit.u = hit.v = 0.0f;
-        hit.prim = BVH_NO_PRIM;
-        if (valid >> i & 1u) {
-            const BvhRay ray = bvh_ray(&prepared, i);
-            stack_closest(nodes, triangles, spheres, &ray, &hit);
-        }
-        hits[first + i].t = hit.prim == BVH_NO_PRIM ? t_max : hit.t;
-        hits[first + i].prim = hit.prim;
-        hits[first + i].u = hit.u;
-        hits[first + i].v = hit.v;
-    }
-}
-
-__kernel void bench_stack_any(__global const BvhNode *nodes,
-                              __global const TriangleBlock *triangles,
-                              __global const SphereBlock *spheres, __global const BvhProbeRay *rays,
-                              __global BvhProbeHit *hits, uint count) {
-    const uint first = (uint)get_global_id(0) * LANES;
-    if (first >= count) {
-        return;
-    }
-    BvhRays prepared;
-    const uint valid = probe_rays(nodes, rays, first, count, &prepared);
-    for (uint i = 0u; i < LANES && first + i < count; ++i) {
-        const BvhRay ray = bvh_ray(&prepared, i);
-        hits[first + i].prim =
-            (valid >> i & 1u) && stack_any(nodes, triangles, spheres, &ray,
-                                           bvh_float_below(rays[first + i].t_max))
-                ? 1u
-                : 0u;
-    }
-}
+PROBE_CLOSEST(bench_stack_closest, stack_closest)
+PROBE_ANY(bench_stack_any, stack_any)

@@ -8,7 +8,8 @@
 /// Every column is measured in turns, round after round, after one round that does not count.
 /// Rates are million rays a CPU second of one thread, medians of the rounds; ratios are medians of
 /// each round's ratio. CPU time, because a machine is seldom idle. Each DIR adds a column with the
-/// kernels in that folder, for one who changes them: they have to read the same tree.
+/// kernels in that folder, for one who changes them: they have to read the same tree. "packets" are
+/// camera rays, LANES at once; the ratios behind the first are to the stackless single rays.
 
 #include "cl_test_device.h"
 #include "flatten/bvh_builder.h"
@@ -113,12 +114,13 @@ std::string options_for(const test::ClTestDevice &device) {
 struct Column {
     std::string name;
     std::function<void(const RaySet &)> trace;
-    std::vector<double> rates;
+    bool coherent_only = false; ///< other rays are left out
+    std::vector<double> rates{};
 };
 
-/// The kernels for closest and any hits of one program.
+/// The kernels for closest and any hits of one program; some have closest hits by packets as well.
 struct Kernels {
-    cl::Kernel closest, any;
+    cl::Kernel closest, any, packet;
 };
 
 /// The tree and the rays on the device.
@@ -173,7 +175,8 @@ std::vector<KernelSource> sources_in(const std::filesystem::path &folder) {
 Kernels product_kernels(const test::ClTestDevice &device,
                         const std::vector<KernelSource> &sources) {
     const cl::Program program = device.build("probes/bvh_probes.cl", options_for(device), sources);
-    return {cl::Kernel(program, "probe_bvh_closest"), cl::Kernel(program, "probe_bvh_any")};
+    return {cl::Kernel(program, "probe_bvh_closest"), cl::Kernel(program, "probe_bvh_any"),
+            cl::Kernel(program, "probe_bvh_packet")};
 }
 
 Kernels stack_kernels(const test::ClTestDevice &device) {
@@ -183,7 +186,7 @@ Kernels stack_kernels(const test::ClTestDevice &device) {
     std::vector<KernelSource> sources = embedded_kernel_sources();
     sources.push_back({"stack_traversal.cl", text.str()});
     const cl::Program program = device.build("stack_traversal.cl", options_for(device), sources);
-    return {cl::Kernel(program, "bench_stack_closest"), cl::Kernel(program, "bench_stack_any")};
+    return {cl::Kernel(program, "bench_stack_closest"), cl::Kernel(program, "bench_stack_any"), {}};
 }
 
 /// All that is compared, compiled once for all meshes.
@@ -253,21 +256,27 @@ void print_build(const std::string &mesh, const Triangles &triangles, const Buil
 void print_rates(const RaySet &set, const std::vector<Column> &columns, std::size_t embree) {
     std::printf("  %-13s %9zu", set.label.c_str(), set.rays.size());
     for (const Column &column : columns) {
-        std::printf(" %10.2f", median(column.rates));
+        std::printf(column.rates.empty() ? "          -" : " %10.2f", median(column.rates));
     }
     if (embree < columns.size()) {
         std::printf(" %8.3f", median_ratio(columns[0].rates, columns[embree].rates));
     }
     for (std::size_t i = 2; i < std::min(embree, columns.size()); ++i) {
-        std::printf(" %8.3f", median_ratio(columns[i].rates, columns[0].rates));
+        if (!columns[i].rates.empty()) {
+            std::printf(" %8.3f", median_ratio(columns[i].rates, columns[0].rates));
+        }
     }
     std::printf("\n");
 }
 
-void trace_in_turns(const RaySet &set, std::vector<Column> &columns, int rounds) {
-    for (Column &column : columns) {
+void trace_in_turns(const RaySet &set, std::vector<Column> &all, int rounds) {
+    std::vector<std::reference_wrapper<Column>> columns;
+    for (Column &column : all) {
         column.rates.clear();
-        column.trace(set); // compiles the kernel and touches the memory
+        if (set.coherent || !column.coherent_only) {
+            columns.emplace_back(column);
+            column.trace(set); // compiles the kernel and touches the memory
+        }
     }
     // Small sets several times over: the first pass finds the caches full of another's tree.
     const std::size_t passes = kLeastRays / set.rays.size() + 1;
@@ -300,17 +309,19 @@ void run_mesh(const std::string &mesh, const test::ClTestDevice &device, Contend
     std::vector<Column> columns;
     for (std::size_t i = 0; i < contenders.names.size(); ++i) {
         Kernels &kernels = contenders.kernels[i];
-        columns.push_back({contenders.names[i],
-                           [&](const RaySet &set) {
+        columns.push_back({contenders.names[i], [&](const RaySet &set) {
                                tree.trace(set.any ? kernels.any : kernels.closest, set.rays.size());
-                           },
-                           {}});
+                           }});
     }
+    columns.push_back(
+        {"packets",
+         [&](const RaySet &set) { tree.trace(contenders.kernels[0].packet, set.rays.size()); },
+         true});
     const std::size_t first_embree = columns.size();
 #ifdef CLRENDER_BENCH_EMBREE
     const EmbreeScene embree(triangles, RTC_BUILD_QUALITY_HIGH);
-    columns.push_back({"Embree 1", [&](const RaySet &set) { embree.trace_single(set); }, {}});
-    columns.push_back({"Embree 8", [&](const RaySet &set) { embree.trace_packets(set); }, {}});
+    columns.push_back({"Embree 1", [&](const RaySet &set) { embree.trace_single(set); }});
+    columns.push_back({"Embree 8", [&](const RaySet &set) { embree.trace_packets(set); }});
 #endif
 
     std::printf("  %-13s %9s", "", "rays");

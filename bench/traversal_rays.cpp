@@ -97,7 +97,7 @@ std::vector<RaySet> make_rays(const Triangles &triangles, int image_size,
         add_bounces(triangles, second, closest(second), random, third);
     }
     Rays shadows = shadow_rays(triangles, camera, seen);
-    return {{"camera", camera, false},
+    return {{"camera", camera, false, true},
             {"first bounce", std::move(first), false},
             {"third bounce", std::move(third), false},
             {"shadow", std::move(shadows), true}};

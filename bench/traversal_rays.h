@@ -12,11 +12,12 @@ namespace clrender::bench {
 using Rays = std::vector<BvhProbeRay>;
 using Hits = std::vector<BvhProbeHit>;
 
-/// One kind of ray, and whether any hit will do.
+/// One kind of ray: whether any hit will do, and whether neighbours go the same way.
 struct RaySet {
     std::string label;
     Rays rays;
     bool any = false;
+    bool coherent = false;
 };
 
 /// Camera rays of an image of `image_size` squared (a multiple of 8), in tiles of 8x8 pixels; from
