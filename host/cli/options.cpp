@@ -335,7 +335,9 @@ void finish_options(Options &options, const RawOptions &raw) {
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
     options.light_samples = raw.light_samples == "auto" ? 0 : *parse_number<int>(raw.light_samples);
-    options.strategy = raw.strategy == "light" ? 1 : raw.strategy == "bsdf" ? 2 : 0;
+    options.strategy = raw.strategy == "light"  ? Strategy::light
+                       : raw.strategy == "bsdf" ? Strategy::bsdf
+                                                : Strategy::mis;
     options.independent = raw.sampler == "independent";
     options.profile = !raw.profile.empty();
     if (raw.profile != bare_profile)

@@ -1,6 +1,8 @@
 #pragma once
 /// The command line: what it may say, checked completely, before anything else runs.
 
+#include "device/kernel_config.h"
+
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -43,7 +45,7 @@ struct Options {
     Accel accel = Accel::bvh;
     bool independent = false; ///< --sampler independent
     int light_samples = 0;    ///< 1, 2, 4, 8 or 16; 0: what suits the scene
-    int strategy = 0;         ///< as RenderOptions::strategy
+    Strategy strategy = Strategy::mis;
     bool check = false;
     std::string stats;         ///< JSON file, or empty
     bool profile = false;      ///< print the table

@@ -5,6 +5,13 @@
 
 namespace clrender {
 
+/// How light is looked for: KernelConfig::STRATEGY.
+enum class Strategy {
+    mis = 0,   ///< light and BSDF sampling, by multiple importance sampling
+    light = 1, ///< light sampling alone
+    bsdf = 2,  ///< BSDF sampling alone
+};
+
 struct KernelConfig {
 #define CLR_CONFIG(name, value, meaning) int name = value;
 #include "shared/kernel_config.def"

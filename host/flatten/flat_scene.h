@@ -74,9 +74,9 @@ struct FlatScene {
 struct FlattenOptions {
     bool brute_force = false;   ///< --accel none
     bool pixel_centers = false; ///< all samples at pixel centres
-    int strategy = 0;           ///< as STRATEGY in kernel_config.def
-    int light_samples = 0;      ///< as LIGHT_SAMPLES in kernel_config.def; 0: chosen
-    Generality generality{};    ///< what the kernel is to be able to do beyond the scene
+    Strategy strategy = Strategy::mis;
+    int light_samples = 0;   ///< as LIGHT_SAMPLES in kernel_config.def; 0: chosen
+    Generality generality{}; ///< what the kernel is to be able to do beyond the scene
 };
 
 /// Flattens a parsed scene, all but the hierarchy: what the kernel has to know is known then. Warns

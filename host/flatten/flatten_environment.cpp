@@ -166,14 +166,14 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
         for (int column = 0; column < 3; ++column)
             f.env_rotation[4 * row + column] = static_cast<float>(axis[column]);
     }
-    *power = build_cells(flat, strategy_of(work) == 1);
+    *power = build_cells(flat, strategy_of(work) == Strategy::light);
     // A map that is black all over adds nothing.
     flat.config.ENVIRONMENT = *power > 0 ? 2 : 1;
 }
 
 void make_environment_a_map(FlatScene &flat) {
     // Where light sampling alone counts, a map and a constant environment mean different things.
-    if (flat.config.ENVIRONMENT == 2 || flat.config.STRATEGY == 1)
+    if (flat.config.ENVIRONMENT == 2 || flat.config.STRATEGY == static_cast<int>(Strategy::light))
         return;
     FrameData &f = flat.frame;
     constexpr std::size_t side = 2;

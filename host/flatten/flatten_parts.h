@@ -48,8 +48,8 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
 /// A constant environment, or none, as a map that light sampling never chooses.
 void make_environment_a_map(FlatScene &flat);
 
-/// How light is looked for, as STRATEGY in kernel_config.def.
-int strategy_of(const Flattening &work);
+/// The option, where the scene's integrator does not say otherwise.
+Strategy strategy_of(const Flattening &work);
 
 /// Camera, film and the bounds of the bounce loop.
 void flatten_camera(Flattening &work);

@@ -1,6 +1,7 @@
 #pragma once
 /// From a parsed scene to a picture.
 
+#include "device/kernel_config.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -20,7 +21,7 @@ struct RenderOptions {
     bool brute_force = false;         ///< test every triangle
     bool pixel_centers = false;       ///< all samples at pixel centres
     bool independent_sampler = false; ///< in place of Sobol' points
-    int strategy = 0;                 ///< 0 MIS, 1 light sampling only, 2 BSDF sampling only
+    Strategy strategy = Strategy::mis;
     int light_samples = 0;            ///< where a path first meets a diffuse surface: a power
                                       ///< of 2; 0: chosen
     int batch = 0;                    ///< blocks of samples in one launch; 0: chosen

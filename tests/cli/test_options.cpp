@@ -38,7 +38,7 @@ TEST_CASE("A scene alone: everything else is left to the scene and the program")
     CHECK_FALSE(options.seed.has_value());
     CHECK(options.lanes == 0);
     CHECK(options.light_samples == 0);
-    CHECK(options.strategy == 0);
+    CHECK(options.strategy == clrender::Strategy::mis);
     CHECK(options.accel == Accel::bvh);
     CHECK(options.exposure == 0);
     CHECK(options.defines.empty());
@@ -95,7 +95,7 @@ TEST_CASE("Every option of the contract is read") {
     CHECK(options.exposure == -1.5);
     CHECK(options.pixel_centers);
     CHECK(options.light_samples == 8);
-    CHECK(options.strategy == 2);
+    CHECK(options.strategy == clrender::Strategy::bsdf);
     CHECK(options.accel == Accel::none);
     CHECK(options.check);
     CHECK(options.stats == "s.json");

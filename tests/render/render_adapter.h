@@ -1,6 +1,7 @@
 #pragma once
 /// The one place of these tests that knows how a scene is rendered.
 
+#include "device/kernel_config.h"
 #include "z_test.h"
 
 #include "scene/load_scene.h"
@@ -21,7 +22,7 @@ struct TestRender {
     int tile_items = 0;                    ///< as in RenderOptions
     std::set<std::string> generality = {}; ///< as in RenderOptions
     int light_samples = 0;                 ///< as in RenderOptions
-    int strategy = 0;                      ///< as in RenderOptions
+    Strategy strategy = Strategy::mis;
     bool sobol = false; ///< independent samples, whose variance is what it looks like, if not
 };
 

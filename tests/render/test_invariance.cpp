@@ -124,8 +124,8 @@ TEST_CASE("light and BSDF sampling alone and together find the same light of a s
         map.string()));
     std::filesystem::remove(map);
     const auto both = render_measured(scene, {.spp = 1024});
-    for (const int strategy : {1, 2})
-        check_same_by_z_test(fmt::format("sky_strategy_{}", strategy),
+    for (const Strategy strategy : {Strategy::light, Strategy::bsdf})
+        check_same_by_z_test(fmt::format("sky_strategy_{}", static_cast<int>(strategy)),
                              render_measured(scene, {.spp = 1024, .seed = 2, .strategy = strategy}),
                              both);
 }
