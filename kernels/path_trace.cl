@@ -252,10 +252,10 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
    no ray follows that could find a light by chance; in lanes of `parted` this is one of
    LIGHT_SAMPLES. */
 CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                vec3 albedo, int_l prim, BounceNumbers numbers, mask_l final,
-                                mask_l parted, mask_l diffuse) {
+                                vec3 albedo, int_l prim, BounceNumbers numbers, Sampler sampler,
+                                mask_l final, mask_l parted, mask_l diffuse) {
     vec3 o = ray_origin(surface, n);
-    LightSample light = light_sample(scene, o, n, numbers, p->sampler, diffuse);
+    LightSample light = light_sample(scene, o, n, numbers, sampler, diffuse);
     real cosine = v3_dot(n, light.wi);
     mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
     if (!any_lane(wanted))
@@ -290,9 +290,10 @@ CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surfa
                                  mask_l parted, mask_l diffuse) {
     const uint parts = any_lane(parted) ? LIGHT_SAMPLES : 1u;
     for (uint part = 0u; part < parts; ++part) {
+        Sampler sampler = sampler_of_part(p->sampler, part);
         if (part > 0u)
-            sampler_get_light(sampler_of_part(p->sampler, part), &numbers);
-        paths_add_light(scene, p, surface, n, albedo, prim, numbers, final, parted,
+            sampler_get_light(sampler, &numbers);
+        paths_add_light(scene, p, surface, n, albedo, prim, numbers, sampler, final, parted,
                         part > 0u ? parted : diffuse);
     }
 }
@@ -319,46 +320,14 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
 #define CLIP_END(p) real_of(INFINITY)
 #endif
 
-/* From one vertex to the next. */
-CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
-    __global const FrameData *f = scene->frame;
-    p->rays += (uint)count_lanes(p->alive);
-    PROFILE_ADD(scene->counts, PROFILE_PATH_RAYS, count_lanes(p->alive));
-    PROFILE_ADD(scene->counts, PROFILE_STEPS, 1u);
-    Hit hit = scene_closest(scene, p->o, p->d, p->self, CLIP_END(p), p->alive);
-    mask_l met = p->alive & ige(hit.prim, int_of(0));
-#if HAS_CLIP || INTEGRATOR == 1
-    p->t_max = real_of(INFINITY);
-#endif
-
-#if INTEGRATOR == 1
-    /* The depth is measured from the near clip plane, as in Mitsuba. */
-    real distance = hit.t * f->length_unit;
-    p->radiance = v3_pick(met, v3_scale(p->throughput, distance), p->radiance);
-    p->alpha = pick(met, p->throughput.x, p->alpha);
-    p->alive = no_lanes();
-#else
-
-#if ENVIRONMENT
-    paths_add_environment(scene, p, p->alive & ~met);
-#endif
-    p->alive = met;
-    if (!any_lane(met))
-        return;
-    Surface surface = surface_at(scene, p->o, p->d, hit, met);
-
-#if HIDE_EMITTERS && HAS_AREA_EMITTERS
-    /* Camera rays go straight through everything that emits. */
-    mask_l through = met & ieq(p->depth, int_of(0)) & ige(surface.emitter, int_of(0));
-    p->o = v3_pick(through, ray_origin(surface, p->d), p->o);
-    p->self = ipick(through, hit.prim, p->self);
-    met &= ~through;
-#endif
+#if INTEGRATOR != 1
+/* What the paths in `met` take in at a surface before it scatters them. */
+CLR_INLINE void paths_see(const SceneData *scene, Paths *p, Surface surface, Hit hit, mask_l met) {
 #if HAS_ALPHA
     /* The camera's path has the filter's weight as its throughput until its first bounce. */
     mask_l seen = met & ieq(p->depth, int_of(0));
 #if HAS_AREA_EMITTERS
-    if (f->max_depth == 1)
+    if (scene->frame->max_depth == 1)
         seen &= ige(surface.emitter, int_of(0)) & lt(v3_dot(surface.ns, p->d), real_of(0.0f));
 #endif
     p->alpha = pick(seen, p->throughput.x, p->alpha);
@@ -366,45 +335,42 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
 #if HAS_AREA_EMITTERS
     paths_add_emission(scene, p, surface, hit.prim, hit.t, met);
 #endif
-    mask_l going = met & ilt(p->depth, int_of(f->max_depth - 1));
+}
 
-    /* The material of the side that the path comes from. */
-    real cosine = -v3_dot(surface.ns, p->d);
-    mask_l back = lt(cosine, real_of(0.0f));
-    int_l material = material_of_side(surface.materials, back);
-    going &= ~ieq(material, int_of((int)CLR_NO_MATERIAL)) & gt(fabs(cosine), real_of(0.0f));
-#if HIDE_EMITTERS && HAS_AREA_EMITTERS
-    p->alive = going | through;
+/* In which of the `diffuse` lanes the path ends with its light sample. */
+CLR_INLINE mask_l paths_final(const SceneData *scene, const Paths *p, Surface surface,
+                              mask_l diffuse) {
+#if FINAL_BY_LIGHTS
+    /* Close to the light, where it looks large, the ray that could meet it is worth tracing. */
+    __global const FrameData *f = scene->frame;
+    vec3 to_light = v3_sub(v3_of(f->sole_light[0], f->sole_light[1], f->sole_light[2]), surface.p);
+    return diffuse & ige(p->depth, int_of(f->max_depth - 2)) &
+           gt(v3_dot(to_light, to_light), real_of(f->sole_light[3]));
 #else
-    p->alive = going;
+    return no_lanes();
 #endif
-    if (!any_lane(going))
-        return;
-    PROFILE_ADD(scene->counts, PROFILE_BOUNCES, count_lanes(going));
-    material = ipick(going, material, int_of(0));
-    Bsdf bsdf = bsdf_fetch(scene, surface, material, going);
-    vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
-    cosine = fabs(cosine);
+}
 
+/* Samples the lights, and a direction for the lanes in `going`, whose paths meet `material` at an
+   angle with this cosine, negative from the back. Those in `through` stay as they are. */
+CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface, int_l prim,
+                              int_l material, real cosine, mask_l going, mask_l through) {
+    PROFILE_ADD(scene->counts, PROFILE_BOUNCES, count_lanes(going));
+    Bsdf bsdf = bsdf_fetch(scene, surface, ipick(going, material, int_of(0)), going);
+    mask_l back = lt(cosine, real_of(0.0f));
+    vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
+    mask_l parted = no_lanes();
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
-    mask_l parted = LIGHT_SAMPLES > 1 ? diffuse & p->first : no_lanes();
-#else
-    mask_l parted = no_lanes();
+    if (LIGHT_SAMPLES > 1)
+        parted = diffuse & p->first;
 #endif
     mask_l ordered = parted | (going & ilt(p->depth, int_of(ORDERED_BOUNCES)));
     BounceNumbers numbers = sampler_bounce(p->sampler, ordered, parted);
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
-    mask_l final = no_lanes();
-#if FINAL_BY_LIGHTS
-    /* Close to the light, where it looks large, the ray that could meet it is worth tracing. */
-    vec3 to_light = v3_sub(v3_of(f->sole_light[0], f->sole_light[1], f->sole_light[2]), surface.p);
-    final = diffuse & ige(p->depth, int_of(f->max_depth - 2)) &
-            gt(v3_dot(to_light, to_light), real_of(f->sole_light[3]));
-#endif
+    mask_l final = paths_final(scene, p, surface, diffuse);
     if (any_lane(diffuse))
-        paths_add_direct(scene, p, surface, n, bsdf.color, hit.prim, numbers, final, parted,
-                         diffuse);
+        paths_add_direct(scene, p, surface, n, bsdf.color, prim, numbers, final, parted, diffuse);
 #if FINAL_BY_LIGHTS
     p->alive &= ~final;
     if (!any_lane(p->alive))
@@ -412,18 +378,14 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
 #endif
 #endif
 
-    BsdfSample sample =
-        bsdf_sample(bsdf, p->d, n, cosine, back, numbers.lobe, numbers.bsdf_u, numbers.bsdf_v);
+    BsdfSample sample = bsdf_sample(bsdf, p->d, n, fabs(cosine), back, numbers.lobe, numbers.bsdf_u,
+                                    numbers.bsdf_v);
     /* Lanes that have ended may go on computing nonsense: nothing of it is looked at. */
-#if HIDE_EMITTERS && HAS_AREA_EMITTERS
     mask_l moved = ~through;
-#else
-    mask_l moved = all_lanes();
-#endif
     p->throughput = v3_pick(moved, v3_mul(p->throughput, sample.weight), p->throughput);
     p->o = v3_pick(moved, ray_origin(surface, sample.wo), p->o);
     p->d = v3_pick(moved, renormalize(sample.wo), p->d);
-    p->self = ipick(moved, hit.prim, p->self);
+    p->self = ipick(moved, prim, p->self);
     real pdf = pick(parted, sample.pdf * (1.0f / LIGHT_SAMPLES), sample.pdf);
     p->first &= ~parted;
     p->prev_pdf = pick(moved, pdf, p->prev_pdf);
@@ -438,6 +400,54 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     paths_roulette(scene, p);
 #endif
     sampler_advance(&p->sampler, BOUNCE_DIMENSIONS);
+}
+#endif
+
+/* From one vertex to the next. */
+CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
+    p->rays += (uint)count_lanes(p->alive);
+    PROFILE_ADD(scene->counts, PROFILE_PATH_RAYS, count_lanes(p->alive));
+    PROFILE_ADD(scene->counts, PROFILE_STEPS, 1u);
+    Hit hit = scene_closest(scene, p->o, p->d, p->self, CLIP_END(p), p->alive);
+    mask_l met = p->alive & ige(hit.prim, int_of(0));
+#if HAS_CLIP || INTEGRATOR == 1
+    p->t_max = real_of(INFINITY);
+#endif
+
+#if INTEGRATOR == 1
+    /* The depth is measured from the near clip plane, as in Mitsuba. */
+    real distance = hit.t * scene->frame->length_unit;
+    p->radiance = v3_pick(met, v3_scale(p->throughput, distance), p->radiance);
+    p->alpha = pick(met, p->throughput.x, p->alpha);
+    p->alive = no_lanes();
+#else
+
+#if ENVIRONMENT
+    paths_add_environment(scene, p, p->alive & ~met);
+#endif
+    p->alive = met;
+    if (!any_lane(met))
+        return;
+    Surface surface = surface_at(scene, p->o, p->d, hit, met);
+
+    mask_l through = no_lanes();
+#if HIDE_EMITTERS && HAS_AREA_EMITTERS
+    /* Camera rays go straight through everything that emits. */
+    through = met & ieq(p->depth, int_of(0)) & ige(surface.emitter, int_of(0));
+    p->o = v3_pick(through, ray_origin(surface, p->d), p->o);
+    p->self = ipick(through, hit.prim, p->self);
+    met &= ~through;
+#endif
+    paths_see(scene, p, surface, hit, met);
+
+    /* The material of the side that the path comes from. */
+    real cosine = -v3_dot(surface.ns, p->d);
+    int_l material = material_of_side(surface.materials, lt(cosine, real_of(0.0f)));
+    mask_l going = met & ilt(p->depth, int_of(scene->frame->max_depth - 1)) &
+                   ~ieq(material, int_of((int)CLR_NO_MATERIAL)) & gt(fabs(cosine), real_of(0.0f));
+    p->alive = going | through;
+    if (any_lane(going))
+        paths_scatter(scene, p, surface, hit.prim, material, cosine, going, through);
 #endif
 }
 

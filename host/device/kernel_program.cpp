@@ -38,7 +38,7 @@ void append_source(const std::vector<KernelSource> &sources, const std::string &
         append_source(sources, line.substr(include.size(), end - include.size()), done, text);
         text += fmt::format("#line {} \"{}\"\n", number + 1, name);
     }
-    // Without a guard it may be wanted again, by other macros, though not inside itself.
+    // Without a guard it is wanted again, by other macros.
     if (source->text.rfind("#ifndef ", 0) != 0)
         done.erase(name);
 }

@@ -13,9 +13,11 @@ namespace clrender {
 /// The texts below a folder in place of the embedded ones. Throws InputError.
 std::vector<KernelSource> read_kernel_sources(const std::string &folder);
 
-/// One text: `main` with every header in place of its first #include, lines numbered as before.
-/// Headers are named by their path in `sources`, and none is included under a condition. Runtimes
-/// find a text of one piece in their caches without compiling any of it. Throws DeviceError.
+/// One text: `main` with every header in place of its first #include, one that does not begin with
+/// an #ifndef as its guard in place of each; lines numbered as before. Headers are named by their
+/// path in `sources`; none is included under a condition, or by itself (it would be left out).
+/// Runtimes find a text of one piece in their caches without compiling any of it. Throws
+/// DeviceError.
 std::string join_sources(const std::vector<KernelSource> &sources, const std::string &main);
 
 /// Compiles a text of one piece, with `options` on top of the standard ones. Throws DeviceError

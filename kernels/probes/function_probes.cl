@@ -57,15 +57,28 @@ __kernel void probe_frame(__global const float *in, __global float *out, uint co
         probe_out(part[k], out, first, count, 6u, k);
 }
 
-/* out: the pair `dimension` of pixel `pixel` + i / `samples` and sample `offset` + i % `samples`,
-   two floats each. */
+/* Of pixel `pixel` + i / `samples` and sample `offset` + i % `samples`. */
+CLR_INLINE Sampler probe_sampler_of(uint first, uint pixel, uint offset, uint samples) {
+    uint_l index = lane_index() + first;
+    return sampler_init(1u, index / samples + pixel, index % samples + offset);
+}
+
+/* out: the pair `dimension` of each, two floats. */
 __kernel void probe_sampler_pair(__global float *out, uint pixel, uint offset, uint samples,
                                  uint dimension, uint count) {
     const uint first = (uint)get_global_id(0) * LANES;
-    uint_l index = lane_index() + first;
-    Sampler sampler = sampler_init(1u, index / samples + pixel, index % samples + offset);
     real u, v;
-    sampler_get_pair(sampler, dimension, &u, &v);
+    sampler_get_pair(probe_sampler_of(first, pixel, offset, samples), dimension, &u, &v);
+    probe_out(u, out, first, count, 2u, 0u);
+    probe_out(v, out, first, count, 2u, 1u);
+}
+
+/* out: two numbers of one hash each. */
+__kernel void probe_sampler_two(__global float *out, uint pixel, uint offset, uint samples,
+                                uint dimension, uint count) {
+    const uint first = (uint)get_global_id(0) * LANES;
+    real u, v;
+    sampler_get_two(probe_sampler_of(first, pixel, offset, samples), dimension, &u, &v);
     probe_out(u, out, first, count, 2u, 0u);
     probe_out(v, out, first, count, 2u, 1u);
 }

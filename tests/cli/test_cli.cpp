@@ -118,6 +118,19 @@ TEST_CASE("Without -o the picture is SCENE.png and SCENE.exr in the current fold
     CHECK(folder.has("small.exr"));
 }
 
+TEST_CASE("The number of threads does not change a bit of the picture") {
+    const TempFolder folder;
+    const std::string scene = folder.write("scene.xml", small_scene);
+    for (const std::string threads : {"1", "2", "3"}) {
+        // What PoCL is told; other runtimes take as many as they like.
+        const ProgramResult result = run_clrender(
+            folder.path(), {"-q", "-s", "64", "-r", "64x48", "-o", threads + ".pfm", scene},
+            {{"POCL_MAX_PTHREAD_COUNT", threads}});
+        REQUIRE(result.exit_code == 0);
+        CHECK(read_file(folder.path() / (threads + ".pfm")) == read_file(folder.path() / "1.pfm"));
+    }
+}
+
 TEST_CASE("Every output format is written") {
     const TempFolder folder;
     folder.write("scene.xml", small_scene);

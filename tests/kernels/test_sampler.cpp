@@ -4,6 +4,8 @@
 #include "cl_test_device.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,10 +20,10 @@ struct Request {
 
 /// u and v of each, one after the other.
 std::vector<float> pairs(const ClTestDevice &device, const Request &r, int lanes = 8,
-                         int sampler = 0) {
+                         int sampler = 0, const char *probe = "probe_sampler_pair") {
     const std::string options =
         "-DLANES=" + std::to_string(lanes) + " -DSAMPLER=" + std::to_string(sampler);
-    cl::Kernel kernel(device.build("probes/function_probes.cl", options), "probe_sampler_pair");
+    cl::Kernel kernel(device.build("probes/function_probes.cl", options), probe);
     const std::size_t count = r.count;
     const cl::Buffer out = device.allocate(2 * count * sizeof(float));
     kernel.setArg(0, out);
@@ -122,4 +124,40 @@ TEST_CASE("numbers of different pairs, and of neighbouring pixels, do not go tog
             CHECK(std::abs(deviation_from_uniform(x, y, 16)) < 5);
             CHECK(std::abs(deviation_from_uniform(x, z, 16)) < 5);
         }
+}
+
+TEST_CASE("single numbers of a pixel's samples are independent from dimension to dimension") {
+    const ClTestDevice device;
+    constexpr std::size_t pixels = 1024, samples = 64;
+    const auto turns = [](double u) { return std::cos(2 * M_PI * u); };
+    for (const int sampler : {0, 1}) {
+        const auto numbers = [&](cl_uint dimension) {
+            return pairs(device, {77, 0, samples, dimension, pixels * samples}, 8, sampler,
+                         "probe_sampler_two");
+        };
+        const auto a = numbers(4), b = numbers(6), far = numbers(4 + (3u << 8u));
+        // Each with its variance for independent numbers.
+        const std::vector<std::pair<std::function<double(double, double)>, double>> functions = {
+            {[&](double u, double v) { return turns(u - v); }, 0.5},
+            {[&](double u, double v) { return turns(u + v); }, 0.5},
+            {[](double u, double v) { return u + v < 1 ? 1.0 : 0.0; }, 0.25},
+            {[](double u, double v) { return u * v; }, 1.0 / 9 - 1.0 / 16}};
+        for (const auto *other : {&b, &far})
+            for (std::size_t f = 0; f < functions.size(); ++f) {
+                const auto &[function, variance] = functions[f];
+                double sum = 0, squares = 0;
+                for (std::size_t p = 0; p < pixels; ++p) {
+                    double mean = 0;
+                    for (std::size_t i = p * samples; i < (p + 1) * samples; ++i)
+                        mean += function(a[2 * i], (*other)[2 * i + 1]) / samples;
+                    sum += mean / pixels;
+                    squares += mean * mean / pixels;
+                }
+                // The variance of so many means is known to 4.4%.
+                const double ratio = (squares - sum * sum) * samples / variance;
+                INFO("sampler " << sampler << ", function " << f << ": " << ratio);
+                CHECK(ratio > 0.8);
+                CHECK(ratio < 1.2);
+            }
+    }
 }

@@ -51,6 +51,34 @@ Scene small_scene(double s, double t = 0) {
     return scene_from_xml(xml);
 }
 
+/// A floor and a ball below a map, brighter upwards and towards one side, without a sun, which BSDF
+/// sampling would hardly find.
+Scene sky_scene(double scale) {
+    Image sky{64, 32, 3, PixelType::f32, {}, {}};
+    for (int row = sky.height - 1; row >= 0; --row)
+        for (int column = 0; column < sky.width; ++column)
+            for (const float tint : {0.7f, 0.8f, 1.0f})
+                sky.f32.push_back(tint * (0.2f + 0.03f * static_cast<float>(row)) *
+                                  (column < sky.width / 2 ? 1.0f : 3.0f));
+    const auto map = std::filesystem::temp_directory_path() /
+                     ("clrender_sky_" + std::to_string(getpid()) + ".pfm");
+    write_image(map.string(), sky);
+    Scene scene = scene_from_xml(fmt::format(
+        R"(<integrator type="path"><integer name="max_depth" value="3"/></integrator>
+        <sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
+        <lookat origin="0 1 6" target="0 0 0" up="0 1 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="32"/><integer name="height" value="32"/>
+        <rfilter type="box"/></film></sensor>
+        <emitter type="envmap"><string name="filename" value="{}"/>
+        <float name="scale" value="{:.17g}"/></emitter>
+        <shape type="rectangle"><transform name="to_world"><scale value="6"/>
+        <rotate x="1" angle="-90"/><translate value="0 -1 0"/></transform></shape>
+        <shape type="sphere"/>)",
+        map.string(), scale));
+    std::filesystem::remove(map);
+    return scene;
+}
+
 void check_same_by_z_test(const std::string &name, const MeasuredImage &a, const MeasuredImage &b) {
     const auto verdict = compare_or_save(name, a, b);
     INFO(verdict.summary);
@@ -93,39 +121,58 @@ TEST_CASE("the number of light samples does not change the picture but for the n
     const Scene scene = small_scene(1);
     const auto one = render_measured(scene, {.spp = 512, .light_samples = 1});
     for (const int count : {2, 8})
-        check_same_by_z_test(fmt::format("light_samples_{}", count),
-                             render_measured(scene, {.spp = 512,
-                                                     .seed = static_cast<std::uint32_t>(count),
-                                                     .light_samples = count}),
-                             one);
+        for (const bool sobol : {false, true})
+            check_same_by_z_test(
+                fmt::format("light_samples_{}_{}", count, sobol ? "sobol" : "independent"),
+                render_measured(scene, {.spp = 512,
+                                        .seed = static_cast<std::uint32_t>(count),
+                                        .light_samples = count,
+                                        .sobol = sobol}),
+                one);
 }
 
 TEST_CASE("light and BSDF sampling alone and together find the same light of a sky") {
-    // Brighter upwards and towards one side, without a sun, which BSDF sampling would hardly find.
-    Image sky{64, 32, 3, PixelType::f32, {}, {}};
-    for (int row = sky.height - 1; row >= 0; --row)
-        for (int column = 0; column < sky.width; ++column)
-            for (const float tint : {0.7f, 0.8f, 1.0f})
-                sky.f32.push_back(tint * (0.2f + 0.03f * static_cast<float>(row)) *
-                                  (column < sky.width / 2 ? 1.0f : 3.0f));
-    const auto map = std::filesystem::temp_directory_path() /
-                     ("clrender_sky_" + std::to_string(getpid()) + ".pfm");
-    write_image(map.string(), sky);
-    const Scene scene = scene_from_xml(fmt::format(
+    const Scene scene = sky_scene(1);
+    const auto both = render_measured(scene, {.spp = 1024});
+    for (const Strategy strategy : {Strategy::light, Strategy::bsdf})
+        check_same_by_z_test(fmt::format("sky_strategy_{}", static_cast<int>(strategy)),
+                             render_measured(scene, {.spp = 1024, .seed = 2, .strategy = strategy}),
+                             both);
+}
+
+TEST_CASE("a sky brighter by a power of two gives the same picture, brighter to the bit") {
+    const auto plain = render_measured(sky_scene(1), {.spp = 64});
+    for (const int exponent : {-90, 90}) {
+        auto bright = render_measured(sky_scene(std::ldexp(1.0, exponent)), {.spp = 64});
+        for (float &value : bright.mean.f32)
+            value = std::ldexp(value, -exponent);
+        INFO("2^" << exponent);
+        CHECK(bright.mean.f32 == plain.mean.f32);
+    }
+}
+
+TEST_CASE("light and BSDF sampling alone and together find the same light of surfaces") {
+    // Broad ones, of every shape, so that BSDF sampling finds them.
+    const Scene scene = scene_from_xml(
         R"(<integrator type="path"><integer name="max_depth" value="3"/></integrator>
         <sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
         <lookat origin="0 1 6" target="0 0 0" up="0 1 0"/></transform>
         <film type="hdrfilm"><integer name="width" value="32"/><integer name="height" value="32"/>
         <rfilter type="box"/></film></sensor>
-        <emitter type="envmap"><string name="filename" value="{}"/></emitter>
         <shape type="rectangle"><transform name="to_world"><scale value="6"/>
         <rotate x="1" angle="-90"/><translate value="0 -1 0"/></transform></shape>
-        <shape type="sphere"/>)",
-        map.string()));
-    std::filesystem::remove(map);
+        <shape type="sphere"><float name="radius" value=".7"/></shape>
+        <shape type="sphere"><point name="center" value="-2.5 1 0"/>
+        <emitter type="area"><rgb name="radiance" value="2 1 1"/></emitter></shape>
+        <shape type="rectangle"><transform name="to_world"><scale value="1.5"/>
+        <rotate x="1" angle="90"/><translate value="0 3 0"/></transform>
+        <emitter type="area"><rgb name="radiance" value="1 2 1"/></emitter></shape>
+        <shape type="obj"><string name="filename" value="data/blob.obj"/>
+        <transform name="to_world"><translate value="2.5 1 0"/></transform>
+        <emitter type="area"><rgb name="radiance" value="1 1 2"/></emitter></shape>)");
     const auto both = render_measured(scene, {.spp = 1024});
     for (const Strategy strategy : {Strategy::light, Strategy::bsdf})
-        check_same_by_z_test(fmt::format("sky_strategy_{}", static_cast<int>(strategy)),
+        check_same_by_z_test(fmt::format("surfaces_strategy_{}", static_cast<int>(strategy)),
                              render_measured(scene, {.spp = 1024, .seed = 2, .strategy = strategy}),
                              both);
 }
@@ -139,16 +186,22 @@ TEST_CASE("the same seed gives the same picture to the bit, another seed another
 }
 
 TEST_CASE("batches and tiles do not change a bit of the picture") {
-    const Scene scene = small_scene(1);
-    const auto whole = render_measured(scene, {.spp = 64});
-    for (const int batch : {1, 2, 7}) {
-        INFO("batches of " << batch << " blocks of samples");
-        CHECK(render_measured(scene, {.spp = 64, .batch_blocks = batch}).mean.f32 ==
-              whole.mean.f32);
-    }
-    for (const int tile : {8, 32, 1000}) {
-        INFO("tiles of " << tile << " work-items");
-        CHECK(render_measured(scene, {.spp = 64, .tile_items = tile}).mean.f32 == whole.mean.f32);
+    // Nine blocks of samples and a part of one. Filters that are splatted have no batches.
+    Scene scene = small_scene(1);
+    for (const FilterKind filter : {FilterKind::box, FilterKind::tent}) {
+        scene.film.filter.kind = filter;
+        constexpr int spp = 600;
+        const auto whole = render_measured(scene, {.spp = spp});
+        for (const int batch : {1, 2, 7}) {
+            INFO("batches of " << batch << " blocks of samples");
+            CHECK(render_measured(scene, {.spp = spp, .batch_blocks = batch}).mean.f32 ==
+                  whole.mean.f32);
+        }
+        for (const int tile : {8, 32, 1000}) {
+            INFO("tiles of " << tile << " work-items");
+            CHECK(render_measured(scene, {.spp = spp, .tile_items = tile}).mean.f32 ==
+                  whole.mean.f32);
+        }
     }
 }
 
