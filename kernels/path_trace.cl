@@ -542,5 +542,5 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
     counters.rays_high += low < rays ? 1u : 0u;
     counters.rays_low = low;
     item_counters[tile] = counters;
-    PROFILE_END(item_profile + tile, counts);
+    PROFILE_END(counts);
 }

@@ -14,19 +14,19 @@ double event_seconds(const cl::Event &event, cl_profiling_info what) {
     return static_cast<double>(nanoseconds) * 1e-9;
 }
 
-ProfileCounts sum_of_tiles(const std::vector<ProfileCounters> &tiles) {
+ProfileCounts sum_of_slots(const std::vector<ProfileCounters> &slots) {
     ProfileCounts sums{};
-    for (const ProfileCounters &tile : tiles)
+    for (const ProfileCounters &slot : slots)
         for (std::size_t i = 0; i < sums.size(); ++i)
-            sums[i] += tile.count[i][0] + 4294967296.0 * tile.count[i][1];
+            sums[i] += slot.count[i][0] + 4294967296.0 * slot.count[i][1];
     return sums;
 }
 
 } // namespace
 
 ProfileRecorder::ProfileRecorder(Profile &profile, const cl::Context &context,
-                                 const cl::CommandQueue &queue, std::size_t tiles)
-    : profile_(profile), queue_(queue), tiles_(tiles) {
+                                 const cl::CommandQueue &queue)
+    : profile_(profile), queue_(queue) {
     with_device("clearing the counters", [&] {
         buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes());
         queue_.enqueueFillBuffer(buffer_, cl_uint{0}, 0, bytes());
@@ -40,7 +40,7 @@ void ProfileRecorder::enqueued(const LaunchPlan::Launch &launch) {
 
 void ProfileRecorder::read_counts() {
     Read &read = reads_.emplace_back();
-    read.counters.resize(tiles_);
+    read.counters.resize(PROFILE_SLOTS);
     with_device("reading the counters", [&] {
         queue_.enqueueReadBuffer(buffer_, CL_FALSE, 0, bytes(), read.counters.data(), nullptr,
                                  &read.event);
@@ -76,7 +76,7 @@ void ProfileRecorder::take_counts(int first_block, int end_block) {
     add_command(command, read.event);
     profile_.downloaded_bytes += static_cast<double>(bytes());
 
-    const ProfileCounts now = sum_of_tiles(read.counters);
+    const ProfileCounts now = sum_of_slots(read.counters);
     ProfilePass pass;
     pass.first_sample = first_block * CLR_BLOCK_SAMPLES;
     pass.end_sample = end_block * CLR_BLOCK_SAMPLES;

@@ -14,13 +14,12 @@ namespace clrender {
 /// The queue has to have been made with CL_QUEUE_PROFILING_ENABLE and to be in order.
 class ProfileRecorder {
 public:
-    /// Allocates and clears the counts of `tiles` tiles.
-    ProfileRecorder(Profile &profile, const cl::Context &context, const cl::CommandQueue &queue,
-                    std::size_t tiles);
+    /// Allocates and clears the counts.
+    ProfileRecorder(Profile &profile, const cl::Context &context, const cl::CommandQueue &queue);
 
-    /// What the kernel adds its counts to.
+    /// What the kernel adds its counts to, and how large it is.
     [[nodiscard]] const cl::Buffer &buffer() const { return buffer_; }
-    [[nodiscard]] std::size_t bytes() const { return tiles_ * sizeof(ProfileCounters); }
+    static constexpr std::size_t bytes() { return PROFILE_SLOTS * sizeof(ProfileCounters); }
 
     /// To be called once `launch` is in the queue. The counts are read behind the last of each
     /// pass.
@@ -43,7 +42,6 @@ private:
 
     Profile &profile_;
     const cl::CommandQueue &queue_;
-    std::size_t tiles_;
     cl::Buffer buffer_;
     std::deque<Read> reads_;
     ProfileCounts before_{}; ///< the counts of all passes that have ended

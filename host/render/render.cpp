@@ -186,8 +186,7 @@ void PathTracer::upload(RenderStats &stats) {
         kernel_.setArg(launch_arguments_++, film_);
         kernel_.setArg(launch_arguments_++, counters_);
         if (options_.profile != nullptr) {
-            recorder_ = std::make_unique<ProfileRecorder>(*options_.profile, context_, queue_,
-                                                          extent_.tiles());
+            recorder_ = std::make_unique<ProfileRecorder>(*options_.profile, context_, queue_);
             kernel_.setArg(launch_arguments_++, recorder_->buffer());
         }
         queue_.finish();
@@ -305,12 +304,24 @@ FlattenOptions flatten_options(const RenderOptions &options) {
     return flatten_options;
 }
 
+/// The side of a work-item's square. Splatted filters need one that reaches no further than the
+/// next.
+int tile_of(const DeviceEntry &entry, const KernelConfig &config) {
+    return entry.is_cpu || config.FILTER == 3 ? cpu_tile : gpu_tile;
+}
+
 } // namespace
 
 std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
     FlatScene flat = flatten(scene, flatten_options(options));
     build_hierarchy(flat);
-    return flat.bytes() + FilmExtent(flat.frame, cpu_tile).bytes();
+    int tile = cpu_tile;
+    try {
+        tile = tile_of(choose_device(options.device), flat.config);
+    } catch (const DeviceError &) {
+        // A scene can be checked where there is no device: it will be one like this.
+    }
+    return flat.bytes() + FilmExtent(flat.frame, static_cast<std::size_t>(tile)).bytes();
 }
 
 RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
@@ -325,7 +336,7 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     FlatScene flat = flatten(scene, flatten_options(options));
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
-    flat.config.TILE = entry.is_cpu || flat.config.FILTER == 3 ? cpu_tile : gpu_tile;
+    flat.config.TILE = tile_of(entry, flat.config);
     flat.config.SAMPLER = options.independent_sampler ? 1 : 0;
     flat.config.PROFILE = options.profile != nullptr ? 1 : 0;
     flat.frame.seed = options.seed;

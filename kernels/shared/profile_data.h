@@ -29,7 +29,10 @@ enum ProfileCounter {
     PROFILE_COUNTERS
 };
 
-/* The counts of one work-item's tile over all launches: low and high half of each. */
+/* Work-items share so many sums, so that what is read back does not grow with the picture. */
+#define PROFILE_SLOTS 1024
+
+/* Sums over work-items and launches: low and high half of each. */
 typedef struct {
     uint count[PROFILE_COUNTERS][2];
 } ProfileCounters;
