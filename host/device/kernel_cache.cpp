@@ -42,7 +42,7 @@ void write_file(const fs::path &path, const std::string &content) {
     file.close();
     if (file)
         fs::rename(unfinished, path, error);
-    else
+    if (!file || error)
         fs::remove(unfinished, error);
 }
 
@@ -76,10 +76,10 @@ std::string describe_pocl_files(const std::vector<fs::path> &programs) {
 /// Whether PoCL still has these files as they were; removes the programs of those that it has not.
 bool pocl_files_are_sound(const std::string &lines) {
     std::istringstream stream(lines);
-    std::string hash;
-    fs::path name;
+    std::string hash, rest;
     bool sound = true;
-    while (stream >> hash >> name) {
+    while (stream >> hash && stream.ignore() && std::getline(stream, rest)) {
+        const fs::path name = rest;
         const auto content = read_file(pocl_cache() / name);
         if (content && fmt::format("{:016x}", hash_of(*content)) == hash)
             continue;

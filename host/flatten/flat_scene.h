@@ -57,7 +57,7 @@ struct FlatScene {
     std::vector<float> env_cdf;
     std::vector<uint> env_guide;
     std::vector<float> filter;
-    /// All but LANES and ITEM_PIXELS, which the device decides.
+    /// All but LANES, TILE, SAMPLER and PROFILE, which the render decides.
     KernelConfig config;
     std::size_t triangle_count = 0;
     /// What build_hierarchy() makes `bvh` of.

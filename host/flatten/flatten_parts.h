@@ -40,9 +40,9 @@ void flatten_shapes(Flattening &work);
 /// The lights to sample, the emitters to meet.
 void flatten_lights(Flattening &work);
 
-/// The environment: a constant one, or a map with its table; returns its light, of which only the
-/// probability is left to fill, if it is to be sampled. `power` becomes the integral over all
-/// directions of the luminance that light sampling goes by.
+/// The environment: a constant one, or a map with its table, of which only the probability of its
+/// light is left to fill. `power` becomes the integral over all directions of the luminance that
+/// light sampling goes by, and is left alone without a map.
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power);
 
 /// A constant environment, or none, as a map that light sampling never chooses.

@@ -120,6 +120,8 @@ Json summary(const Profile &profile) {
     json["shadow_rays"] = c[PROFILE_SHADOW_RAYS];
     json["packets"] = c[PROFILE_PACKETS];
     json["packet_rays"] = c[PROFILE_PACKET_RAYS];
+    json["tree_nodes"] = tree_nodes(c);
+    json["tree_blocks"] = tree_blocks(c);
     json["lanes_alive"] = lane_occupancy(c, profile.config.LANES);
     json["shadow_lanes_alive"] = shadow_occupancy(c, profile.config.LANES);
     json["path_nodes_per_ray"] = path_nodes_per_ray(c);

@@ -12,27 +12,29 @@ Vector vector(const float *v) {
     return {v[0], v[1], v[2]};
 }
 
-/// Rays of a work-item.
-constexpr int probe_lanes = 8;
-
+/// The kernels with so many rays a work-item.
 struct Probe {
+    explicit Probe(int width) : lanes(width) {}
+    int lanes;
     ClTestDevice device;
-    cl::Program program =
-        device.build("probes/bvh_probes.cl", "-DLANES=" + std::to_string(probe_lanes));
+    cl::Program program = device.build("probes/bvh_probes.cl", "-DLANES=" + std::to_string(lanes));
     cl::Kernel closest{program, "probe_bvh_closest"};
     cl::Kernel packet{program, "probe_bvh_packet"};
     cl::Kernel any{program, "probe_bvh_any"};
 };
 
-Probe &the_probe() {
+Probe &the_probe(int lanes = 8) {
     // Never destroyed: a runtime may have shut down before the statics of this program.
-    static Probe *probe = new Probe;
-    return *probe;
+    static Probe *const eight = new Probe(8);
+    static Probe *sixteen = nullptr;
+    if (lanes == 16 && sixteen == nullptr)
+        sixteen = new Probe(16);
+    return lanes == 16 ? *sixteen : *eight;
 }
 
-std::vector<BvhProbeHit> run(cl::Kernel &kernel, const Bvh &bvh,
+std::vector<BvhProbeHit> run(Probe &probe, cl::Kernel &kernel, const Bvh &bvh,
                              const std::vector<BvhProbeRay> &rays) {
-    const ClTestDevice &device = the_probe().device;
+    const ClTestDevice &device = probe.device;
     const cl::Buffer nodes = device.upload(std::span<const BvhNode>(bvh.nodes));
     const cl::Buffer triangles = device.upload(std::span<const TriangleBlock>(bvh.triangle_blocks));
     const cl::Buffer spheres = device.upload(std::span<const SphereBlock>(bvh.sphere_blocks));
@@ -44,7 +46,8 @@ std::vector<BvhProbeHit> run(cl::Kernel &kernel, const Bvh &bvh,
     kernel.setArg(3, ray_buffer);
     kernel.setArg(4, hits);
     kernel.setArg(5, cl_uint(rays.size()));
-    device.run(kernel, (rays.size() + probe_lanes - 1) / probe_lanes);
+    const auto lanes = static_cast<std::size_t>(probe.lanes);
+    device.run(kernel, (rays.size() + lanes - 1) / lanes);
     return device.download<BvhProbeHit>(hits, rays.size());
 }
 
@@ -119,16 +122,17 @@ glm::vec3 random_direction(Random &random) {
 }
 
 std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
-    return run(the_probe().closest, bvh, rays);
+    return run(the_probe(), the_probe().closest, bvh, rays);
 }
 
-std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
-    return run(the_probe().packet, bvh, rays);
+std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays,
+                                       int lanes) {
+    return run(the_probe(lanes), the_probe(lanes).packet, bvh, rays);
 }
 
 std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
     std::vector<bool> blocked;
-    for (const BvhProbeHit &hit : run(the_probe().any, bvh, rays)) {
+    for (const BvhProbeHit &hit : run(the_probe(), the_probe().any, bvh, rays)) {
         blocked.push_back(hit.prim != 0);
     }
     return blocked;

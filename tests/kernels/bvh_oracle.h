@@ -37,9 +37,10 @@ glm::vec3 random_point(Random &random);
 
 /// The kernels over a tree, on the tests' device.
 std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
-/// The same by packets; rays that go another way than those beside them are not traced
-/// (BVH_PROBE_NOT_TRACED).
-std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
+/// The same by packets of 8 or 16 lanes; rays that go another way than those beside them are not
+/// traced (BVH_PROBE_NOT_TRACED).
+std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays,
+                                       int lanes);
 std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
 
 /// Where the line of a ray meets a primitive, in double: at `t`, and `margin` inside (the least

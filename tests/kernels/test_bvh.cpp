@@ -201,7 +201,9 @@ TEST_CASE("a packet finds what its rays find one by one, to the bit", "[oclgrind
                               : probe_ray(random_point(random), glm::vec3(0.0f));
     }
     const auto apart = probe_closest(bvh, rays);
-    const auto packed = probe_packets(bvh, rays);
+    const int lanes = GENERATE(8, 16);
+    INFO(lanes << " lanes");
+    const auto packed = probe_packets(bvh, rays, lanes);
     std::size_t traced = 0, found = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (packed[i].prim != BVH_PROBE_NOT_TRACED) {
