@@ -20,11 +20,15 @@ constexpr double camera_flops = 60;                     ///< a camera ray
 constexpr double bounce_flops = 120;                    ///< surface, BSDF and the next ray
 constexpr double light_flops = 80;                      ///< a light sample and its weight
 
+} // namespace
+
 double ratio(double part, double whole) {
     return whole > 0 ? part / whole : 0;
 }
 
-} // namespace
+double percent(double part, double whole) {
+    return 100 * ratio(part, whole);
+}
 
 ProfileSums profile_sums(const Profile &profile, std::size_t first, std::size_t end) {
     ProfileSums sums;

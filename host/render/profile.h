@@ -79,6 +79,10 @@ struct ProfileSums {
 /// Of the passes [first, end), at least one.
 ProfileSums profile_sums(const Profile &profile, std::size_t first, std::size_t end);
 
+/// 0 where there is no whole.
+double ratio(double part, double whole);
+double percent(double part, double whole);
+
 double total_rays(const ProfileCounts &counts);
 /// Mean share of the lanes that are alive in an iteration of the bounce loop.
 double lane_occupancy(const ProfileCounts &counts, int lanes);

@@ -22,10 +22,6 @@ std::string bytes_text(double bytes) {
                      : fmt::format("{:.2f} {}", bytes, units[unit]);
 }
 
-double percent(double part, double whole) {
-    return whole > 0 ? 100 * part / whole : 0;
-}
-
 constexpr const char *header =
     "pass     samples  launches  device s   gaps s  queued s |  camera  bounce  shadow |"
     "  nodes  blocks | lanes |  flop  bytes\n"
@@ -37,17 +33,17 @@ std::string row(const Profile &profile, const std::string &name, const ProfileSu
     const ProfileCounts &c = sums.counts;
     const double rays = total_rays(c);
     const double seconds = sums.device_seconds;
-    return fmt::format(
-        "{:<5}{:>11}{:>10.0f}{:>10.4f}{:>9.4f}{:>10.4f} |{:>8.3f}{:>8.3f}{:>8.3f} "
-        "|{:>7.2f}{:>8.2f} "
-        "|{:>6.1f} |{:>6.1f}{:>7.1f}\n",
-        name, fmt::format("{}-{}", sums.first_sample, sums.end_sample - 1), sums.launches, seconds,
-        sums.gap_seconds, sums.queue_seconds, c[PROFILE_CAMERA_RAYS] * 1e-6,
-        (c[PROFILE_PATH_RAYS] - c[PROFILE_CAMERA_RAYS]) * 1e-6, c[PROFILE_SHADOW_RAYS] * 1e-6,
-        rays > 0 ? tree_nodes(c) / rays : 0, rays > 0 ? tree_blocks(c) / rays : 0,
-        100 * lane_occupancy(c, profile.config.LANES),
-        percent(float_operations(c, profile.config), seconds * profile.peak.flops),
-        percent(tree_bytes(c), seconds * profile.peak.bandwidth));
+    return fmt::format("{:<5}{:>11}{:>10.0f}{:>10.4f}{:>9.4f}{:>10.4f} |{:>8.3f}{:>8.3f}{:>8.3f} "
+                       "|{:>7.2f}{:>8.2f} "
+                       "|{:>6.1f} |{:>6.1f}{:>7.1f}\n",
+                       name, fmt::format("{}-{}", sums.first_sample, sums.end_sample - 1),
+                       sums.launches, seconds, sums.gap_seconds, sums.queue_seconds,
+                       c[PROFILE_CAMERA_RAYS] * 1e-6,
+                       (c[PROFILE_PATH_RAYS] - c[PROFILE_CAMERA_RAYS]) * 1e-6,
+                       c[PROFILE_SHADOW_RAYS] * 1e-6, ratio(tree_nodes(c), rays),
+                       ratio(tree_blocks(c), rays), 100 * lane_occupancy(c, profile.config.LANES),
+                       percent(float_operations(c, profile.config), seconds * profile.peak.flops),
+                       percent(tree_bytes(c), seconds * profile.peak.bandwidth));
 }
 
 std::string rows(const Profile &profile) {
@@ -72,7 +68,7 @@ std::string details(const Profile &profile, const ProfileSums &all) {
     const double seconds = all.device_seconds;
     std::string text;
     text += fmt::format("rays               {:.4g} million a second of device time\n",
-                        seconds > 0 ? total_rays(c) * 1e-6 / seconds : 0);
+                        ratio(total_rays(c) * 1e-6, seconds));
     text += fmt::format("camera and bounce  {:.2f} nodes and {:.2f} blocks a ray\n",
                         path_nodes_per_ray(c), path_blocks_per_ray(c));
     text += fmt::format("shadow             {:.2f} nodes and {:.2f} blocks a ray\n",
@@ -89,12 +85,12 @@ std::string details(const Profile &profile, const ProfileSums &all) {
                         bytes_text(profile.device_bytes));
     text += fmt::format("nodes and blocks   {} read (estimate), {}/s: {:.1f}% of {}/s that the "
                         "device streams\n",
-                        bytes_text(bytes), bytes_text(seconds > 0 ? bytes / seconds : 0),
+                        bytes_text(bytes), bytes_text(ratio(bytes, seconds)),
                         percent(bytes, seconds * profile.peak.bandwidth),
                         bytes_text(profile.peak.bandwidth));
     text += fmt::format("float operations   {:.4g} billion (estimate), {:.4g} billion a second: "
                         "{:.1f}% of {:.4g} that the device reaches\n",
-                        flop * 1e-9, seconds > 0 ? flop * 1e-9 / seconds : 0,
+                        flop * 1e-9, ratio(flop * 1e-9, seconds),
                         percent(flop, seconds * profile.peak.flops), profile.peak.flops * 1e-9);
     return text;
 }

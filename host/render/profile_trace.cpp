@@ -59,12 +59,7 @@ Json counter_event(const char *name, double time, const Json &values) {
 /// The counters from `time` on; all zero without a pass.
 void add_counters(Json &events, const Profile &profile, double time, const ProfileSums &sums) {
     const ProfileCounts &c = sums.counts;
-    const auto per_second = [&](double amount) {
-        return sums.device_seconds > 0 ? amount / sums.device_seconds : 0;
-    };
-    const auto percent = [](double part, double whole) {
-        return whole > 0 ? 100 * part / whole : 0;
-    };
+    const auto per_second = [&](double amount) { return ratio(amount, sums.device_seconds); };
     events.push_back(counter_event(
         "million rays a second", time,
         {{"camera", per_second(c[PROFILE_CAMERA_RAYS] * 1e-6)},
