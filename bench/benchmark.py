@@ -117,6 +117,8 @@ def conclude(session, seeds, spps, folder):
     import report
     import summary
     summaries = summary.summarise(session, seeds, spps)
+    if not any(found.entries for found in summaries):
+        sys.exit("Nothing has been measured yet.")
     print("\n" + report.write_report(session, summaries, seeds, folder / "table.md"))
     if importlib.util.find_spec("matplotlib") is None:
         print("plots: left out, this Python has no matplotlib")

@@ -69,8 +69,9 @@ def details(summary):
     return markdown(header, rows)
 
 
-def bias(summaries):
-    """The image means beside each other, and clrender against Mitsuba in standard deviations."""
+def bias(summaries, seeds):
+    """The image means beside each other, and clrender against Mitsuba in standard deviations, where
+    there are seeds enough to know them."""
     labels = {entry.name: entry.label for summary in summaries for entry in summary.entries}
     rows = []
     for summary in summaries:
@@ -80,7 +81,7 @@ def bias(summaries):
         ours = ["–"] * 3
         if agreement:
             ours[0] = f"{100 * agreement.difference:+.2f}%"
-        if agreement and math.isfinite(agreement.z_expected):
+        if agreement and seeds >= 4 and math.isfinite(agreement.z_expected):
             ours[1:] = (f"{agreement.z_mean:+.1f}",
                         f"{agreement.z_blocks:.2f} ({agreement.z_expected:.2f})")
         rows.append([summary.name, *[cells.get(name, "–") for name in labels], *ours])
@@ -110,7 +111,7 @@ def write_report(session, summaries, seeds, path):
     parts.append("In italics: extrapolated. Starts are whole processes at one sample a pixel, cold "
                  "with empty kernel caches. Peak: resident memory.\n")
     parts.append("## Bias\n\nImage means against the median of all renderers; clrender against "
-                 "Mitsuba, also in standard deviations.\n\n" + bias(summaries))
+                 "Mitsuba, also in standard deviations.\n\n" + bias(summaries, len(seeds)))
     left_out = [f"- {scene}, {renderer}: {reason}"
                 for (scene, renderer), reason in session.failures.items()]
     left_out += [f"- {scene}: no time for seed {seed}" for scene, seed in session.skipped]

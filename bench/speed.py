@@ -140,11 +140,19 @@ def materials(arguments):
     print(f"  mixed / dearest: {medians[-1] / max(medians[:-1]):.2f} (the bar is 1.5)\n", flush=True)
 
 
+BARS = {"spheres": spheres, "mesh": mesh, "materials": materials}
+
+
+def bar(name):
+    if name not in BARS:
+        raise argparse.ArgumentTypeError(f"there is no {name!r}, expected {', '.join(BARS)}")
+    return name
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bars", nargs="*", choices=["spheres", "mesh", "materials", []],
-                        help="default: all")
+    parser.add_argument("bars", nargs="*", type=bar, help="default: all")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--lanes", type=int, choices=[1, 8, 16], help="default: this processor's")
     parser.add_argument("--prototype", type=pathlib.Path, default=SHARED / "prototypes")
@@ -152,9 +160,8 @@ def main():
 
     use_cores(available_cores())
     WORK.mkdir(parents=True, exist_ok=True)
-    for name, measure in (("spheres", spheres), ("mesh", mesh), ("materials", materials)):
-        if not arguments.bars or name in arguments.bars:
-            measure(arguments)
+    for name in arguments.bars or BARS:
+        BARS[name](arguments)
 
 
 if __name__ == "__main__":

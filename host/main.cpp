@@ -98,6 +98,8 @@ int render_command(const cli::Options &options) {
                            scene.sample_count, !options.quiet && !options.check);
     const RenderOptions how = render_options(options, progress, profile);
     if (options.check) {
+        if (!options.stats.empty() || options.profile)
+            log::warn("--check renders nothing: --stats and --profile are left out");
         log::info(fmt::format(
             "{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples, {:.2f} MiB on the device",
             options.scene, scene.shapes.size(), scene.emitters.size(), scene.film.crop_width,
@@ -117,7 +119,7 @@ int render_command(const cli::Options &options) {
     profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
     if (!options.stats.empty())
-        cli::write_stats(options.stats, result.stats, times);
+        cli::write_stats(options.stats, result, times);
     log::info(cli::summary(result, times, options.outputs));
     if (options.profile)
         fmt::print("{}", profile_table(profile));

@@ -399,7 +399,9 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
 #if HAS_ROULETTE
     paths_roulette(scene, p);
 #endif
-    sampler_advance(&p->sampler, BOUNCE_DIMENSIONS);
+    Sampler next = p->sampler;
+    sampler_advance(&next, BOUNCE_DIMENSIONS);
+    p->sampler = sampler_pick(moved, next, p->sampler);
 }
 #endif
 

@@ -14,6 +14,7 @@
 #include <fmt/core.h>
 #include <limits>
 #include <set>
+#include <unistd.h>
 
 namespace clrender::cli {
 
@@ -129,6 +130,9 @@ std::string check_new_file(const std::string &path) {
     const fs::path folder = fs::path(path).parent_path();
     if (!folder.empty() && !fs::is_directory(folder, ignored))
         return fmt::format("there is no folder '{}'", folder.string());
+    if (fs::exists(path, ignored) ? access(path.c_str(), W_OK) != 0
+                                  : access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+        return fmt::format("'{}' cannot be written", path);
     return {};
 }
 

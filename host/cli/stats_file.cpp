@@ -15,13 +15,15 @@ double per_second(double count, double seconds) {
 
 } // namespace
 
-void write_stats(const std::string &path, const RenderStats &stats, const RunTimes &times) {
+void write_stats(const std::string &path, const RenderResult &result, const RunTimes &times) {
+    const RenderStats &stats = result.stats;
     const nlohmann::ordered_json json = {
         {"device", stats.device},
         {"lanes", stats.lanes},
         {"width", stats.width},
         {"height", stats.height},
         {"spp", stats.spp},
+        {"interrupted", result.interrupted},
         {"paths", stats.paths},
         {"rays", stats.rays},
         {"paths_per_second", per_second(stats.paths, stats.seconds_render)},

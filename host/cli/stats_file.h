@@ -14,7 +14,7 @@ struct RunTimes {
 };
 
 /// Writes the statistics as JSON. Throws InputError that names `path`.
-void write_stats(const std::string &path, const RenderStats &stats, const RunTimes &times);
+void write_stats(const std::string &path, const RenderResult &result, const RunTimes &times);
 
 /// One line for the terminal.
 std::string summary(const RenderResult &result, const RunTimes &times,

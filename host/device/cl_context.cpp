@@ -121,8 +121,8 @@ DeviceEntry choose_device(const std::string &spec) {
         });
     }
     if (entry == nullptr)
-        throw DeviceError(
-            fmt::format("no OpenCL device matches '{}'; there are {}", spec, join_names(devices)));
+        throw DeviceError(fmt::format("no OpenCL device matches '{}'; the devices are {}", spec,
+                                      join_names(devices)));
     return *entry;
 }
 

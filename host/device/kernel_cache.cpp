@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <unistd.h>
 
@@ -73,6 +74,13 @@ std::string describe_pocl_files(const std::vector<fs::path> &programs) {
     return lines;
 }
 
+/// The folder of a PoCL program that a file below PoCL's cache belongs to: its first two parts.
+fs::path program_of(const fs::path &file) {
+    auto part = file.begin();
+    const fs::path group = *part++;
+    return part == file.end() ? group : group / *part;
+}
+
 /// Whether PoCL still has these files as they were; removes the programs of those that it has not.
 bool pocl_files_are_sound(const std::string &lines) {
     std::istringstream stream(lines);
@@ -84,11 +92,40 @@ bool pocl_files_are_sound(const std::string &lines) {
         if (content && fmt::format("{:016x}", hash_of(*content)) == hash)
             continue;
         sound = false;
-        auto part = name.begin();
         std::error_code error;
-        fs::remove_all(pocl_cache() / *part / *std::next(part), error);
+        fs::remove_all(pocl_cache() / program_of(name), error);
     }
     return sound;
+}
+
+/// Removes PoCL's programs that no entry vouches for: a run that ended before it had written one
+/// may have left them unfinished, and PoCL aborts on such. Those of the last minute may be another
+/// run's. Only in a folder of our own.
+void remove_unknown_programs() {
+    std::error_code error;
+    if (fs::relative(pocl_cache(), cache_folder(), error).string().rfind("..", 0) == 0 || error)
+        return;
+    std::set<fs::path> known;
+    for (const fs::directory_entry &entry :
+         fs::directory_iterator(cache_folder() / "kernels", error)) {
+        std::istringstream lines(read_file(entry.path()).value_or(""));
+        constexpr std::size_t digits = 16;
+        for (std::string line; std::getline(lines, line);)
+            if (line.size() > digits + 1 && line[digits] == ' ')
+                known.insert(program_of(line.substr(digits + 1)));
+    }
+    const auto recent = fs::file_time_type::clock::now() - std::chrono::minutes(1);
+    const auto remove_old = [&](const fs::directory_entry &entry) {
+        if (entry.last_write_time(error) < recent && !error)
+            fs::remove_all(entry.path(), error);
+    };
+    for (const fs::directory_entry &group : fs::directory_iterator(pocl_cache(), error)) {
+        if (group.path().filename().string().rfind("tempfile", 0) == 0)
+            remove_old(group);
+        for (const fs::directory_entry &program : fs::directory_iterator(group.path(), error))
+            if (known.count(group.path().filename() / program.path().filename()) == 0)
+                remove_old(program);
+    }
 }
 
 } // namespace
@@ -133,8 +170,11 @@ std::string KernelCache::read_payload() {
 
 bool KernelCache::look_up() {
     const std::string payload = read_payload();
-    if (payload.empty())
+    if (payload.empty()) {
+        if (enabled_ && driver_keeps_kernels_)
+            remove_unknown_programs();
         return false;
+    }
     if (driver_keeps_kernels_)
         return pocl_files_are_sound(payload);
     binary_.assign(payload.begin(), payload.end());

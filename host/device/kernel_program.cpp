@@ -65,18 +65,25 @@ cl::Program take_binary(const cl::Context &context, const cl::Device &device,
 std::vector<KernelSource> read_kernel_sources(const std::string &folder) {
     std::vector<KernelSource> sources;
     std::error_code error;
-    for (const auto &entry : fs::recursive_directory_iterator(folder, error)) {
-        if (!entry.is_regular_file())
+    fs::recursive_directory_iterator entry(folder, error);
+    for (const fs::recursive_directory_iterator end; !error && entry != end;
+         entry.increment(error)) {
+        if (!entry->is_regular_file())
             continue;
-        std::ifstream file(entry.path());
+        std::ifstream file(entry->path());
+        if (!file)
+            throw InputError({entry->path().string(), 0}, "cannot be read, expected kernel source");
         std::stringstream text;
         text << file.rdbuf();
-        sources.push_back({fs::relative(entry.path(), folder).string(), text.str()});
+        sources.push_back({entry->path().lexically_relative(folder).string(), text.str()});
     }
+    if (error)
+        throw InputError({folder, 0}, "cannot be read (" + error.message() +
+                                          "), expected a folder of kernel sources");
     const bool has_entry = std::any_of(sources.begin(), sources.end(), [](const auto &source) {
         return source.name == "path_trace.cl";
     });
-    if (error || !has_entry)
+    if (!has_entry)
         throw InputError({folder, 0}, "expected a folder of kernel sources with path_trace.cl");
     return sources;
 }

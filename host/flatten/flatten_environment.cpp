@@ -133,9 +133,8 @@ double build_cells(FlatScene &flat, bool alone) {
     for (std::size_t i = 3; i < flat.env_texels.size(); i += 4)
         flat.env_texels[i] = std::ldexp(flat.env_texels[i], -exponent);
     const auto count = static_cast<double>(rows);
-    flat.frame.env_density =
-        static_cast<float>(2 * count * std::sin(pi / (2 * count)) /
-                           (pi * std::ldexp(weights.total, -exponent)));
+    flat.frame.env_density = static_cast<float>(2 * count * std::sin(pi / (2 * count)) /
+                                                (pi * std::ldexp(weights.total, -exponent)));
     std::vector<double> weight_of_row(rows, 0.0);
     for (std::size_t i = 0; i < weights.cells.size(); ++i)
         weight_of_row[i / width] += weights.cells[i];

@@ -87,6 +87,22 @@ TEST_CASE("A cache that is damaged or half removed is filled anew") {
     CHECK(caches.render_hits());
 }
 
+TEST_CASE("What an unfinished run has left in PoCL's cache is removed") {
+    const Caches caches;
+    CHECK_FALSE(caches.render_hits());
+    const fs::path below = caches.folder.path() / "cache" / "clrender";
+    if (!fs::exists(below / "pocl"))
+        return; // not PoCL
+    const std::string picture = read_file(caches.folder.path() / "a.pfm");
+    fs::remove_all(below / "kernels");
+    caches.truncate("clrender/pocl", GENERATE(0, 5000));
+    for (const auto &entry : fs::recursive_directory_iterator(below / "pocl"))
+        fs::last_write_time(entry, fs::file_time_type::clock::now() - std::chrono::hours(1));
+    CHECK_FALSE(caches.render_hits());
+    CHECK(read_file(caches.folder.path() / "a.pfm") == picture);
+    CHECK(caches.render_hits());
+}
+
 TEST_CASE("Folders that cannot be written fail no render") {
     Caches caches;
     caches.folder.write("file", "");

@@ -345,6 +345,41 @@ TEST_CASE("a surface is not hit again by the ray that starts on it") {
     }
 }
 
+TEST_CASE("a ray leaves all spheres that coincide with the one it starts on") {
+    Random random(13);
+    BvhScene scene;
+    const int copies = 3;
+    for (int i = 0; i < 100; ++i) {
+        const glm::vec3 center = 10.0f * random_point(random);
+        const float radius = std::exp2(4.0f * random_point(random).x);
+        for (int copy = 0; copy < copies; ++copy) // the last one is larger by a few units
+            scene.add_sphere(center, copy < 2 ? radius : radius * (1.0f + 2e-7f));
+    }
+    const Bvh bvh = build_bvh(scene.triangles, scene.spheres);
+    Rays rays;
+    std::vector<double> cosines;
+    for (int i = 0; i < rays_of(100000); ++i) {
+        const uint prim = uint(i) % uint(scene.spheres.size());
+        const BvhSphere &sphere = scene.spheres[prim];
+        const glm::vec3 n = random_direction(random), d = random_direction(random);
+        const float reach = sphere.radius * 1.99f * std::abs(glm::dot(n, d));
+        rays.push_back(probe_ray(sphere.center + sphere.radius * n, d, reach, prim));
+        cosines.push_back(double{glm::dot(n, d)});
+    }
+    const auto hits = probe_closest(bvh, rays);
+    const auto blocked = probe_any(bvh, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        // Grazing rays are left out: there the larger one is a longer way through.
+        const bool is_twin = hits[i].prim / copies == rays[i].self / copies;
+        INFO("cosine " << cosines[i] << ", " << hits[i].prim << " at " << hits[i].t << " from "
+                       << rays[i].self);
+        if (std::abs(cosines[i]) > 0.02) {
+            REQUIRE((hits[i].prim == BVH_NO_PRIM || !is_twin));
+            REQUIRE(blocked[i] == (hits[i].prim != BVH_NO_PRIM));
+        }
+    }
+}
+
 TEST_CASE("spheres far away and huge ones nearby are hit where they are") {
     Random random(8);
     SECTION("from afar") {
