@@ -47,16 +47,24 @@ void write_file(const fs::path &path, const std::string &content) {
         fs::remove(unfinished, error);
 }
 
-/// PoCL's folders of programs that it has used since `start`: it touches a file in each.
-std::vector<fs::path> pocl_programs_since(fs::file_time_type start) {
+/// PoCL's folders of programs.
+std::vector<fs::path> pocl_programs() {
     std::vector<fs::path> programs;
     std::error_code error;
     for (const fs::directory_entry &group : fs::directory_iterator(pocl_cache(), error))
-        for (const fs::directory_entry &program : fs::directory_iterator(group.path(), error)) {
-            const auto used = fs::last_write_time(program.path() / "last_accessed", error);
-            if (!error && used >= start)
-                programs.push_back(program.path());
-        }
+        for (const fs::directory_entry &program : fs::directory_iterator(group.path(), error))
+            programs.push_back(program.path());
+    return programs;
+}
+
+/// Those that PoCL has used since `start`: it touches a file in each.
+std::vector<fs::path> pocl_programs_since(fs::file_time_type start) {
+    std::vector<fs::path> programs = pocl_programs();
+    std::erase_if(programs, [&](const fs::path &program) {
+        std::error_code error;
+        const auto used = fs::last_write_time(program / "last_accessed", error);
+        return error || used < start;
+    });
     return programs;
 }
 
@@ -74,26 +82,40 @@ std::string describe_pocl_files(const std::vector<fs::path> &programs) {
     return lines;
 }
 
-/// The folder of a PoCL program that a file below PoCL's cache belongs to: its first two parts.
-fs::path program_of(const fs::path &file) {
-    auto part = file.begin();
-    const fs::path group = *part++;
-    return part == file.end() ? group : group / *part;
+/// A file of PoCL's, as an entry describes it.
+struct PoclFile {
+    std::string hash;
+    fs::path name; ///< below PoCL's cache
+
+    /// The folder of its program: the first two parts of the name.
+    [[nodiscard]] fs::path program() const {
+        auto part = name.begin();
+        const fs::path group = *part++;
+        return part == name.end() ? group : group / *part;
+    }
+};
+
+/// The files that an entry, or its payload alone, describes; other lines are passed over.
+std::vector<PoclFile> described_pocl_files(const std::string &entry) {
+    constexpr std::size_t digits = 16;
+    std::vector<PoclFile> files;
+    std::istringstream lines(entry);
+    for (std::string line; std::getline(lines, line);)
+        if (line.size() > digits + 1 && line[digits] == ' ')
+            files.push_back({line.substr(0, digits), line.substr(digits + 1)});
+    return files;
 }
 
 /// Whether PoCL still has these files as they were; removes the programs of those that it has not.
-bool pocl_files_are_sound(const std::string &lines) {
-    std::istringstream stream(lines);
-    std::string hash, rest;
+bool pocl_files_are_sound(const std::string &payload) {
     bool sound = true;
-    while (stream >> hash && stream.ignore() && std::getline(stream, rest)) {
-        const fs::path name = rest;
-        const auto content = read_file(pocl_cache() / name);
-        if (content && fmt::format("{:016x}", hash_of(*content)) == hash)
+    for (const PoclFile &file : described_pocl_files(payload)) {
+        const auto content = read_file(pocl_cache() / file.name);
+        if (content && fmt::format("{:016x}", hash_of(*content)) == file.hash)
             continue;
         sound = false;
         std::error_code error;
-        fs::remove_all(pocl_cache() / program_of(name), error);
+        fs::remove_all(pocl_cache() / file.program(), error);
     }
     return sound;
 }
@@ -107,25 +129,20 @@ void remove_unknown_programs() {
         return;
     std::set<fs::path> known;
     for (const fs::directory_entry &entry :
-         fs::directory_iterator(cache_folder() / "kernels", error)) {
-        std::istringstream lines(read_file(entry.path()).value_or(""));
-        constexpr std::size_t digits = 16;
-        for (std::string line; std::getline(lines, line);)
-            if (line.size() > digits + 1 && line[digits] == ' ')
-                known.insert(program_of(line.substr(digits + 1)));
-    }
+         fs::directory_iterator(cache_folder() / "kernels", error))
+        for (const PoclFile &file : described_pocl_files(read_file(entry.path()).value_or("")))
+            known.insert(pocl_cache() / file.program());
     const auto recent = fs::file_time_type::clock::now() - std::chrono::minutes(1);
-    const auto remove_old = [&](const fs::directory_entry &entry) {
-        if (entry.last_write_time(error) < recent && !error)
-            fs::remove_all(entry.path(), error);
+    const auto remove_old = [&](const fs::path &path) {
+        if (fs::last_write_time(path, error) < recent && !error)
+            fs::remove_all(path, error);
     };
-    for (const fs::directory_entry &group : fs::directory_iterator(pocl_cache(), error)) {
-        if (group.path().filename().string().rfind("tempfile", 0) == 0)
-            remove_old(group);
-        for (const fs::directory_entry &program : fs::directory_iterator(group.path(), error))
-            if (known.count(group.path().filename() / program.path().filename()) == 0)
-                remove_old(program);
-    }
+    for (const fs::path &program : pocl_programs())
+        if (known.count(program) == 0)
+            remove_old(program);
+    for (const fs::directory_entry &file : fs::directory_iterator(pocl_cache(), error))
+        if (file.path().filename().string().rfind("tempfile", 0) == 0)
+            remove_old(file.path());
 }
 
 } // namespace

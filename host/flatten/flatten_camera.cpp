@@ -74,7 +74,8 @@ void flatten_integrator(Flattening &work) {
     FrameData &f = flat.frame;
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
     f.rr_depth = integrator.rr_depth;
-    flat.config.STRATEGY = static_cast<int>(strategy_of(work));
+    const Strategy strategy = strategy_of(work);
+    flat.config.STRATEGY = static_cast<int>(strategy);
     flat.config.HIDE_EMITTERS = integrator.hide_emitters ? 1 : 0;
     if (integrator.kind == IntegratorKind::direct) {
         f.max_depth = 2;
@@ -84,7 +85,7 @@ void flatten_integrator(Flattening &work) {
     // light. After some bounces all of it may as well come from light sampling, where that cannot
     // miss: of several lights it might choose one that is hidden, and seldom the one that shines.
     constexpr int long_path = 5;
-    flat.config.FINAL_BY_LIGHTS = strategy_of(work) == Strategy::mis && f.max_depth >= long_path &&
+    flat.config.FINAL_BY_LIGHTS = strategy == Strategy::mis && f.max_depth >= long_path &&
                                           f.max_depth < INT_MAX && flat.config.ENVIRONMENT == 0 &&
                                           flat.config.LIGHT_COUNT == 1 && !work.light_by_chance
                                       ? 1

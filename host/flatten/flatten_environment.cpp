@@ -127,8 +127,10 @@ double build_cells(FlatScene &flat, bool alone) {
     }
     // The device squares the weights of the texels: the largest is brought between 1 and 2.
     float largest = 0;
-    for (std::size_t i = 3; i < flat.env_texels.size(); i += 4)
-        largest = std::max(largest, flat.env_texels[i] -= std::min(flat.env_texels[i], floor));
+    for (std::size_t i = 3; i < flat.env_texels.size(); i += 4) {
+        flat.env_texels[i] = weight_above(flat.env_texels[i], floor);
+        largest = std::max(largest, flat.env_texels[i]);
+    }
     const int exponent = std::ilogb(largest);
     for (std::size_t i = 3; i < flat.env_texels.size(); i += 4)
         flat.env_texels[i] = std::ldexp(flat.env_texels[i], -exponent);

@@ -20,6 +20,19 @@ constexpr double camera_flops = 60;                     ///< a camera ray
 constexpr double bounce_flops = 120;                    ///< surface, BSDF and the next ray
 constexpr double light_flops = 80;                      ///< a light sample and its weight
 
+/// Visits of nodes and blocks, by all rays; `weight` is what a packet's visit counts.
+struct TreeVisits {
+    double nodes, triangle_blocks, sphere_blocks;
+};
+
+TreeVisits tree_visits(const ProfileCounts &c, double weight) {
+    return {c[PROFILE_PATH_NODES] + c[PROFILE_SHADOW_NODES] + weight * c[PROFILE_PACKET_NODES],
+            c[PROFILE_PATH_TRIANGLE_BLOCKS] + c[PROFILE_SHADOW_TRIANGLE_BLOCKS] +
+                weight * c[PROFILE_PACKET_TRIANGLE_BLOCKS],
+            c[PROFILE_PATH_SPHERE_BLOCKS] + c[PROFILE_SHADOW_SPHERE_BLOCKS] +
+                weight * c[PROFILE_PACKET_SPHERE_BLOCKS]};
+}
+
 } // namespace
 
 double ratio(double part, double whole) {
@@ -86,23 +99,6 @@ double shadow_blocks_per_ray(const ProfileCounts &counts) {
     return ratio(counts[PROFILE_SHADOW_TRIANGLE_BLOCKS] + counts[PROFILE_SHADOW_SPHERE_BLOCKS],
                  counts[PROFILE_SHADOW_RAYS]);
 }
-
-namespace {
-
-/// Visits of nodes and blocks, by all rays; `weight` is what a packet's visit counts.
-struct TreeVisits {
-    double nodes, triangle_blocks, sphere_blocks;
-};
-
-TreeVisits tree_visits(const ProfileCounts &c, double weight) {
-    return {c[PROFILE_PATH_NODES] + c[PROFILE_SHADOW_NODES] + weight * c[PROFILE_PACKET_NODES],
-            c[PROFILE_PATH_TRIANGLE_BLOCKS] + c[PROFILE_SHADOW_TRIANGLE_BLOCKS] +
-                weight * c[PROFILE_PACKET_TRIANGLE_BLOCKS],
-            c[PROFILE_PATH_SPHERE_BLOCKS] + c[PROFILE_SHADOW_SPHERE_BLOCKS] +
-                weight * c[PROFILE_PACKET_SPHERE_BLOCKS]};
-}
-
-} // namespace
 
 double tree_nodes(const ProfileCounts &counts) {
     return tree_visits(counts, 1).nodes;

@@ -21,9 +21,7 @@ __kernel void probe_bvh_packet(PROBE_PARAMETERS) {
     const real zero = real_of(0.0f);
     BvhPacketHit hit = {load_real(t_max), zero, zero, int_of(0), int_of(0)};
     if (any_lane(coherent)) {
-        const BvhRay ray = bvh_ray(&prepared, bvh_lowest_bit(lane_bits(coherent)));
-        const BvhPacket packet = bvh_packet(&prepared, &ray, coherent);
-        bvh_closest_packet(nodes, triangles, spheres, &packet, &ray, &hit);
+        bvh_closest_packet(nodes, triangles, spheres, &prepared, coherent, &hit);
     }
     store_int(coherent, packed);
     store_int(hit.prim, prim);

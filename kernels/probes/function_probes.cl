@@ -63,22 +63,16 @@ CLR_INLINE Sampler probe_sampler_of(uint first, uint pixel, uint offset, uint sa
     return sampler_init(1u, index / samples + pixel, index % samples + offset);
 }
 
-/* out: the pair `dimension` of each, two floats. */
-__kernel void probe_sampler_pair(__global float *out, uint pixel, uint offset, uint samples,
-                                 uint dimension, uint count) {
-    const uint first = (uint)get_global_id(0) * LANES;
-    real u, v;
-    sampler_get_pair(probe_sampler_of(first, pixel, offset, samples), dimension, &u, &v);
-    probe_out(u, out, first, count, 2u, 0u);
-    probe_out(v, out, first, count, 2u, 1u);
-}
+/* out: the two numbers that `get` makes of `dimension`, of each. */
+#define PROBE_SAMPLER(name, get)                                                                   \
+    __kernel void name(__global float *out, uint pixel, uint offset, uint samples, uint dimension, \
+                       uint count) {                                                               \
+        const uint first = (uint)get_global_id(0) * LANES;                                         \
+        real u, v;                                                                                 \
+        get(probe_sampler_of(first, pixel, offset, samples), dimension, &u, &v);                   \
+        probe_out(u, out, first, count, 2u, 0u);                                                   \
+        probe_out(v, out, first, count, 2u, 1u);                                                   \
+    }
 
-/* out: two numbers of one hash each. */
-__kernel void probe_sampler_two(__global float *out, uint pixel, uint offset, uint samples,
-                                uint dimension, uint count) {
-    const uint first = (uint)get_global_id(0) * LANES;
-    real u, v;
-    sampler_get_two(probe_sampler_of(first, pixel, offset, samples), dimension, &u, &v);
-    probe_out(u, out, first, count, 2u, 0u);
-    probe_out(v, out, first, count, 2u, 1u);
-}
+PROBE_SAMPLER(probe_sampler_pair, sampler_get_pair)
+PROBE_SAMPLER(probe_sampler_two, sampler_get_two)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace clrender::test {
 
@@ -14,27 +15,26 @@ Vector vector(const float *v) {
 
 /// The kernels with so many rays a work-item.
 struct Probe {
-    explicit Probe(int width) : lanes(width) {}
-    int lanes;
+    explicit Probe(int lanes)
+        : program(device.build("probes/bvh_probes.cl", "-DLANES=" + std::to_string(lanes))) {}
     ClTestDevice device;
-    cl::Program program = device.build("probes/bvh_probes.cl", "-DLANES=" + std::to_string(lanes));
+    cl::Program program;
     cl::Kernel closest{program, "probe_bvh_closest"};
     cl::Kernel packet{program, "probe_bvh_packet"};
     cl::Kernel any{program, "probe_bvh_any"};
 };
 
-Probe &the_probe(int lanes = 8) {
+Probe &the_probe(int lanes) {
     // Never destroyed: a runtime may have shut down before the statics of this program.
-    static Probe *const eight = new Probe(8);
-    static Probe *sixteen = nullptr;
-    if (lanes == 16 && sixteen == nullptr)
-        sixteen = new Probe(16);
-    return lanes == 16 ? *sixteen : *eight;
+    static auto *const probes = new std::map<int, Probe>;
+    return probes->try_emplace(lanes, lanes).first->second;
 }
 
-std::vector<BvhProbeHit> run(Probe &probe, cl::Kernel &kernel, const Bvh &bvh,
-                             const std::vector<BvhProbeRay> &rays) {
+std::vector<BvhProbeHit> run(cl::Kernel Probe::*which, const Bvh &bvh,
+                             const std::vector<BvhProbeRay> &rays, int lanes = 8) {
+    Probe &probe = the_probe(lanes);
     const ClTestDevice &device = probe.device;
+    cl::Kernel &kernel = probe.*which;
     const cl::Buffer nodes = device.upload(std::span<const BvhNode>(bvh.nodes));
     const cl::Buffer triangles = device.upload(std::span<const TriangleBlock>(bvh.triangle_blocks));
     const cl::Buffer spheres = device.upload(std::span<const SphereBlock>(bvh.sphere_blocks));
@@ -46,8 +46,8 @@ std::vector<BvhProbeHit> run(Probe &probe, cl::Kernel &kernel, const Bvh &bvh,
     kernel.setArg(3, ray_buffer);
     kernel.setArg(4, hits);
     kernel.setArg(5, cl_uint(rays.size()));
-    const auto lanes = static_cast<std::size_t>(probe.lanes);
-    device.run(kernel, (rays.size() + lanes - 1) / lanes);
+    const auto width = static_cast<std::size_t>(lanes);
+    device.run(kernel, (rays.size() + width - 1) / width);
     return device.download<BvhProbeHit>(hits, rays.size());
 }
 
@@ -122,17 +122,17 @@ glm::vec3 random_direction(Random &random) {
 }
 
 std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
-    return run(the_probe(), the_probe().closest, bvh, rays);
+    return run(&Probe::closest, bvh, rays);
 }
 
 std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays,
                                        int lanes) {
-    return run(the_probe(lanes), the_probe(lanes).packet, bvh, rays);
+    return run(&Probe::packet, bvh, rays, lanes);
 }
 
 std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
     std::vector<bool> blocked;
-    for (const BvhProbeHit &hit : run(the_probe(), the_probe().any, bvh, rays)) {
+    for (const BvhProbeHit &hit : run(&Probe::any, bvh, rays)) {
         blocked.push_back(hit.prim != 0);
     }
     return blocked;

@@ -85,6 +85,14 @@ void check_same_by_z_test(const std::string &name, const MeasuredImage &a, const
     CHECK(verdict.passes);
 }
 
+void check_strategies(const std::string &name, const Scene &scene) {
+    const auto both = render_measured(scene, {.spp = 1024});
+    for (const Strategy strategy : {Strategy::light, Strategy::bsdf})
+        check_same_by_z_test(fmt::format("{}_strategy_{}", name, static_cast<int>(strategy)),
+                             render_measured(scene, {.spp = 1024, .seed = 2, .strategy = strategy}),
+                             both);
+}
+
 } // namespace
 
 TEST_CASE("a scene scaled by a power of two gives the same picture to the bit") {
@@ -132,12 +140,7 @@ TEST_CASE("the number of light samples does not change the picture but for the n
 }
 
 TEST_CASE("light and BSDF sampling alone and together find the same light of a sky") {
-    const Scene scene = sky_scene(1);
-    const auto both = render_measured(scene, {.spp = 1024});
-    for (const Strategy strategy : {Strategy::light, Strategy::bsdf})
-        check_same_by_z_test(fmt::format("sky_strategy_{}", static_cast<int>(strategy)),
-                             render_measured(scene, {.spp = 1024, .seed = 2, .strategy = strategy}),
-                             both);
+    check_strategies("sky", sky_scene(1));
 }
 
 TEST_CASE("a sky brighter by a power of two gives the same picture, brighter to the bit") {
@@ -170,11 +173,7 @@ TEST_CASE("light and BSDF sampling alone and together find the same light of sur
         <shape type="obj"><string name="filename" value="data/blob.obj"/>
         <transform name="to_world"><translate value="2.5 1 0"/></transform>
         <emitter type="area"><rgb name="radiance" value="1 1 2"/></emitter></shape>)");
-    const auto both = render_measured(scene, {.spp = 1024});
-    for (const Strategy strategy : {Strategy::light, Strategy::bsdf})
-        check_same_by_z_test(fmt::format("surfaces_strategy_{}", static_cast<int>(strategy)),
-                             render_measured(scene, {.spp = 1024, .seed = 2, .strategy = strategy}),
-                             both);
+    check_strategies("surfaces", scene);
 }
 
 TEST_CASE("the same seed gives the same picture to the bit, another seed another one") {
