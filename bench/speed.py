@@ -8,8 +8,9 @@
   materials the benchmark's glass scene against itself with one of its materials on everything: what
             lanes of different materials cost each other; the bar is 1.5 times the dearest one
 
-The programs or scenes take turns; the medians count. Only rendering is timed: no reading, building or
-compiling. What is not there is left out, and said. scripts/bench measures more: error against time.
+The programs or scenes take turns; the medians count. Only rendering is timed: no reading, building
+or compiling. What is not there is left out, and said. scripts/bench measures more: error against
+time.
 """
 
 import argparse
@@ -35,18 +36,34 @@ def native_lanes():
     return 16 if "avx512f" in flags else 8 if "avx2" in flags else 4
 
 
-def compare(title, rounds, bar, ours, peer_name, peer):
-    """Lets both take turns, prints every figure, the medians and their ratio."""
-    print(f"{title}: million paths a second")
-    print(f"  {'round':8}{'clrender':>12}{peer_name:>24}")
-    ours()  # fills the kernel cache
+def take_turns(title, rounds, columns):
+    """Lets the columns (name -> function) take turns, prints every figure and the medians, which
+    it returns by name."""
+    print(title)
+    widths = [max(12, len(name) + 3) for name in columns]
+
+    def line(label, figures):
+        cells = "".join(f"{figure:{width}.4g}" for figure, width in zip(figures, widths))
+        print(f"  {label:8}{cells}", flush=True)
+
+    print(f"  {'round':8}" + "".join(f"{name:>{width}}" for name, width in zip(columns, widths)))
+    for measure in columns.values():
+        measure()  # fills the kernel caches
     figures = []
     for number in range(1, rounds + 1):
-        figures.append((ours(), peer()))
-        print(f"  {number:<8}{figures[-1][0]:12.3f}{figures[-1][1]:24.3f}", flush=True)
-    mine, theirs = (statistics.median(column) for column in zip(*figures))
-    print(f"  {'median':8}{mine:12.3f}{theirs:24.3f}")
-    print(f"  clrender / {peer_name}: {mine / theirs:.2f} (the bar is {bar})\n", flush=True)
+        figures.append([measure() for measure in columns.values()])
+        line(str(number), figures[-1])
+    medians = [statistics.median(column) for column in zip(*figures)]
+    line("median", medians)
+    return dict(zip(columns, medians))
+
+
+def compare(title, rounds, bar, ours, peer_name, peer):
+    """Lets both take turns, prints every figure, the medians and their ratio."""
+    medians = take_turns(f"{title}: million paths a second", rounds,
+                         {"clrender": ours, peer_name: peer})
+    print(f"  clrender / {peer_name}: {medians['clrender'] / medians[peer_name]:.2f} "
+          f"(the bar is {bar})\n", flush=True)
 
 
 def spheres(arguments):
@@ -118,7 +135,8 @@ def of_one_material(scene, kind, written):
 def materials(arguments):
     python = peer_python()
     if not python:
-        print("materials: left out, there is no Python with numpy (scripts/bench --install-peers)\n")
+        print("materials: left out, there is no Python with numpy "
+              "(scripts/bench --install-peers)\n")
         return
     run([python, BENCH / "make_scenes.py", WORK, "glass"])
     mixed, spp = WORK / "glass.xml", 64
@@ -127,17 +145,12 @@ def materials(arguments):
     for kind, scene in scenes.items():
         of_one_material(mixed, kind, scene)
     scenes["mixed"] = mixed
-    print("The glass scene with one material on everything, and as it is: seconds a million paths")
-    print(f"  {'round':8}" + "".join(f"{name:>12}" for name in scenes))
-    for scene in scenes.values():
-        clrender_rate(scene, WORK, "-s", spp)  # fills the kernel cache
-    rounds = []
-    for number in range(1, arguments.rounds + 1):
-        rounds.append([1 / clrender_rate(scene, WORK, "-s", spp) for scene in scenes.values()])
-        print(f"  {number:<8}" + "".join(f"{figure:12.4f}" for figure in rounds[-1]), flush=True)
-    medians = [statistics.median(column) for column in zip(*rounds)]
-    print(f"  {'median':8}" + "".join(f"{figure:12.4f}" for figure in medians))
-    print(f"  mixed / dearest: {medians[-1] / max(medians[:-1]):.2f} (the bar is 1.5)\n", flush=True)
+    title = "The glass scene with one material on everything, and as it is: seconds a million paths"
+    medians = take_turns(title, arguments.rounds,
+                         {name: lambda scene=scene: 1 / clrender_rate(scene, WORK, "-s", spp)
+                          for name, scene in scenes.items()})
+    dearest = max(medians[kind] for kind in kinds)
+    print(f"  mixed / dearest: {medians['mixed'] / dearest:.2f} (the bar is 1.5)\n", flush=True)
 
 
 BARS = {"spheres": spheres, "mesh": mesh, "materials": materials}
