@@ -248,12 +248,12 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 #endif
 
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
-/* Light of one sampled light each, behind a shadow ray. In lanes of `final` the path ends here, and
-   no ray follows that could find a light by chance; in lanes of `parted` this is one of
-   LIGHT_SAMPLES. */
+/* Light of one sampled light each, behind a shadow ray, for paths whose throughput has taken in the
+   albedo. In lanes of `final` the path ends here, and no ray follows that could find a light by
+   chance; in lanes of `parted` this is one of LIGHT_SAMPLES. */
 CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                vec3 albedo, int_l prim, BounceNumbers numbers, Sampler sampler,
-                                mask_l final, mask_l parted, mask_l diffuse) {
+                                int_l prim, BounceNumbers numbers, Sampler sampler, mask_l final,
+                                mask_l parted, mask_l diffuse) {
     vec3 o = ray_origin(surface, n);
     LightSample light = light_sample(scene, o, n, numbers, sampler, diffuse);
     real cosine = v3_dot(n, light.wi);
@@ -280,20 +280,20 @@ CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surfac
 #else
     real weight = bsdf_pdf * light.inv_pdf;
 #endif
-    paths_add_radiance(p, v3_mul(albedo, light.radiance), weight * share, lit);
+    paths_add_radiance(p, light.radiance, weight * share, lit);
 }
 
 /* Direct light at diffuse surfaces. In lanes of `parted`, where paths first meet one, the noise of
    the whole path is mostly that of the light, and more of it is sampled. */
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                 vec3 albedo, int_l prim, BounceNumbers numbers, mask_l final,
-                                 mask_l parted, mask_l diffuse) {
+                                 int_l prim, BounceNumbers numbers, mask_l final, mask_l parted,
+                                 mask_l diffuse) {
     const uint parts = any_lane(parted) ? LIGHT_SAMPLES : 1u;
     for (uint part = 0u; part < parts; ++part) {
         Sampler sampler = sampler_of_part(p->sampler, part);
         if (part > 0u)
             sampler_get_light(sampler, &numbers);
-        paths_add_light(scene, p, surface, n, albedo, prim, numbers, sampler, final, parted,
+        paths_add_light(scene, p, surface, n, prim, numbers, sampler, final, parted,
                         part > 0u ? parted : diffuse);
     }
 }
@@ -369,18 +369,13 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
     BounceNumbers numbers = sampler_bounce(p->sampler, ordered, parted);
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l final = paths_final(scene, p, surface, diffuse);
-    if (any_lane(diffuse))
-        paths_add_direct(scene, p, surface, n, bsdf.color, prim, numbers, final, parted, diffuse);
-#if FINAL_BY_LIGHTS
-    p->alive &= ~final;
-    if (!any_lane(p->alive))
-        return;
-#endif
 #endif
 
+    /* Before the lights, although lanes that end there do not need it: the next ray waits for
+       nothing then. Lanes that have ended may go on computing nonsense: nothing of it is looked
+       at. */
     BsdfSample sample = bsdf_sample(bsdf, p->d, n, fabs(cosine), back, numbers.lobe, numbers.bsdf_u,
                                     numbers.bsdf_v);
-    /* Lanes that have ended may go on computing nonsense: nothing of it is looked at. */
     mask_l moved = ~through;
     p->throughput = v3_pick(moved, v3_mul(p->throughput, sample.weight), p->throughput);
     p->o = v3_pick(moved, ray_origin(surface, sample.wo), p->o);
@@ -394,6 +389,12 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
 #endif
     p->eta2 = pick(moved, p->eta2 * sample.eta * sample.eta, p->eta2);
     p->depth -= moved;
+
+#if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
+    if (any_lane(diffuse))
+        paths_add_direct(scene, p, surface, n, prim, numbers, final, parted, diffuse);
+    p->alive &= ~final;
+#endif
     vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
     p->alive &= ~moved | gt(v3_max(size), real_of(0.0f));
 #if HAS_ROULETTE
