@@ -22,9 +22,11 @@
 /* Bounces whose numbers are spread evenly over the samples of a pixel. */
 #define ORDERED_BOUNCES 2
 
-/* Lanes that have to be idle before new samples are started: starting costs the same for one lane
-   as for all. */
-#define REFILL_LANES ((3 * LANES + 3) / 4)
+/* Starting samples costs the same for one lane as for all, and lanes that start together need their
+   ordered numbers, and meet their lights, together. So new samples wait until lanes have stood idle
+   for about as many steps as that is worth, and are enough. */
+#define REFILL_IDLE_STEPS (3 * LANES / 2)
+#define REFILL_LANES ((LANES + 3) / 4)
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
    of the last direction, infinite where the last vertex was specular or the camera, divided by the
@@ -466,9 +468,12 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);
+    int idle_steps = 0;
     for (;;) {
         const int idle = LANES - count_lanes(p.alive);
-        if (idle == LANES || (idle >= REFILL_LANES && work_left(&work))) {
+        idle_steps += idle;
+        if (idle == LANES || (idle >= REFILL_LANES && idle_steps >= REFILL_IDLE_STEPS)) {
+            idle_steps = 0;
             paths_finish(scene, &p, &work, block, counters);
             if (work_left(&work))
                 paths_refill(scene, &p, &work);
