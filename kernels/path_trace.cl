@@ -253,11 +253,8 @@ CLR_INLINE void paths_add_emission(const SceneData *scene, Paths *p, Surface sur
 /* Light of one sampled light each, behind a shadow ray, for paths whose throughput has taken in the
    albedo. In lanes of `final` the path ends here, and no ray follows that could find a light by
    chance; in lanes of `parted` this is one of LIGHT_SAMPLES. */
-CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                int_l prim, BounceNumbers numbers, Sampler sampler, mask_l final,
-                                mask_l parted, mask_l diffuse) {
-    vec3 o = ray_origin(surface, n);
-    LightSample light = light_sample(scene, o, n, numbers, sampler, diffuse);
+CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, vec3 o, vec3 n, int_l prim,
+                                LightSample light, mask_l final, mask_l parted) {
     real cosine = v3_dot(n, light.wi);
     mask_l wanted = light.valid & gt(cosine, real_of(0.0f));
     if (!any_lane(wanted))
@@ -285,19 +282,22 @@ CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, Surface surfac
     paths_add_radiance(p, light.radiance, weight * share, lit);
 }
 
-/* Direct light at diffuse surfaces. In lanes of `parted`, where paths first meet one, the noise of
-   the whole path is mostly that of the light, and more of it is sampled. */
-CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, Surface surface, vec3 n,
-                                 int_l prim, BounceNumbers numbers, mask_l final, mask_l parted,
-                                 mask_l diffuse) {
+/* Direct light at diffuse surfaces: `light` is what was sampled first. In lanes of `parted`, where
+   paths first meet one, the noise of the whole path is mostly that of the light, and more of it is
+   sampled. */
+CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, vec3 o, vec3 n, int_l prim,
+                                 LightSample light, mask_l final, mask_l parted) {
+    paths_add_light(scene, p, o, n, prim, light, final, parted);
+#if LIGHT_SAMPLES > 1
     const uint parts = any_lane(parted) ? LIGHT_SAMPLES : 1u;
-    for (uint part = 0u; part < parts; ++part) {
-        Sampler sampler = sampler_of_part(p->sampler, part);
-        if (part > 0u)
-            sampler_get_light(sampler, &numbers);
-        paths_add_light(scene, p, surface, n, prim, numbers, sampler, final, parted,
-                        part > 0u ? parted : diffuse);
+    for (uint part = 1u; part < parts; ++part) {
+        BounceNumbers numbers;
+        const Sampler sampler = sampler_of_part(p->sampler, part);
+        sampler_get_light(sampler, &numbers);
+        light = light_sample(scene, o, n, numbers, sampler, parted);
+        paths_add_light(scene, p, o, n, prim, light, final, parted);
     }
+#endif
 }
 #endif
 
@@ -371,11 +371,16 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
     BounceNumbers numbers = sampler_bounce(p->sampler, ordered, parted);
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l final = paths_final(scene, p, surface, diffuse);
+    vec3 light_o = ray_origin(surface, n);
+    LightSample light;
+    light.valid = no_lanes();
+    if (any_lane(diffuse))
+        light = light_sample(scene, light_o, n, numbers, sampler_of_part(p->sampler, 0u), diffuse);
 #endif
 
-    /* Before the lights, although lanes that end there do not need it: the next ray waits for
-       nothing then. Lanes that have ended may go on computing nonsense: nothing of it is looked
-       at. */
+    /* Between a light's sample and its shadow ray, although paths that end there do not need it:
+       the one is waited for, and the next ray then waits for neither. Lanes that have ended may go
+       on computing nonsense: nothing of it is looked at. */
     BsdfSample sample = bsdf_sample(bsdf, p->d, n, fabs(cosine), back, numbers.lobe, numbers.bsdf_u,
                                     numbers.bsdf_v);
     mask_l moved = ~through;
@@ -394,7 +399,7 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
 
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     if (any_lane(diffuse))
-        paths_add_direct(scene, p, surface, n, prim, numbers, final, parted, diffuse);
+        paths_add_direct(scene, p, light_o, n, prim, light, final, parted);
     p->alive &= ~final;
 #endif
     vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
