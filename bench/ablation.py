@@ -29,7 +29,7 @@ GROUPS = {
     "textures": "HAS_UVS,HAS_BITMAPS_U8,HAS_BITMAPS_F32,HAS_CHECKERBOARDS",
     "kinds of light": "HAS_AREA_EMITTERS,HAS_POINT_LIGHTS,HAS_SPHERE_LIGHTS,HAS_PLANAR_LIGHTS,"
                       "HAS_TRIANGLE_LIGHTS",
-    "number of lights": "LIGHT_COUNT,HAS_ORIENTED_LIGHTS,SOLE_LIGHT_SPHERE",
+    "number of lights": "LIGHT_COUNT,HAS_ORIENTED_LIGHTS,SOLE_EMITTER,SOLE_LIGHT_SPHERE",
     "environment map": "ENVIRONMENT",
     "lens and clipping": "HAS_LENS,HAS_CLIP",
     "roulette": "HAS_ROULETTE",

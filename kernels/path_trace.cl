@@ -24,8 +24,12 @@
 
 /* Starting samples costs the same for one lane as for all, and lanes that start together need their
    ordered numbers, and meet their lights, together. So new samples wait until lanes have stood idle
-   for about as many steps as that is worth, and are enough. */
+   for about as many steps as that is worth, and are enough. Without a tree, steps cost less. */
+#if HAS_TRIANGLES || HAS_BVH_SPHERES
 #define REFILL_IDLE_STEPS (3 * LANES / 2)
+#else
+#define REFILL_IDLE_STEPS (2 * LANES)
+#endif
 #define REFILL_LANES ((LANES + 3) / 4)
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density

@@ -301,6 +301,7 @@ double luminance(const Rgb &c) {
 void flatten_lights(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.emitters.resize(work.scene.emitters.size());
+    flat.config.SOLE_EMITTER = flat.emitters.size() == 1 ? 1 : 0;
     LightList list;
     double map_power = 0;
     for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {

@@ -40,6 +40,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_AREA_EMITTERS, 1),
         CLR_SETTING(LIGHT_COUNT, -1),
         CLR_SETTING(HAS_ORIENTED_LIGHTS, 1),
+        CLR_SETTING(SOLE_EMITTER, 0),
         CLR_SETTING(SOLE_LIGHT_SPHERE, -1),
         CLR_SETTING(HAS_POINT_LIGHTS, 1),
         CLR_SETTING(HAS_SPHERE_LIGHTS, 1),
