@@ -349,9 +349,10 @@ CLR_INLINE mask_l paths_final(const SceneData *scene, const Paths *p, Surface su
 #if FINAL_BY_LIGHTS
     /* Close to the light, where it looks large, the ray that could meet it is worth tracing. */
     __global const FrameData *f = scene->frame;
-    vec3 to_light = v3_sub(v3_of(f->sole_light[0], f->sole_light[1], f->sole_light[2]), surface.p);
+    __global const float *light = scene->lights->position;
+    vec3 to_light = v3_sub(v3_of(light[0], light[1], light[2]), surface.p);
     return diffuse & ige(p->depth, int_of(f->max_depth - 2)) &
-           gt(v3_dot(to_light, to_light), real_of(f->sole_light[3]));
+           gt(v3_dot(to_light, to_light), real_of(f->final_distance2));
 #else
     return no_lanes();
 #endif

@@ -243,12 +243,11 @@ double shadow_free_distance(const LightExtent &light, const Sphere &sphere) {
 /// What is simpler where there is one light: it needs no walk to tell its density, it is never in
 /// its own way, and large spheres may be shown never to be.
 void set_sole_light(const LightExtent &extent, FlatScene &flat) {
-    const Light &sole = flat.lights.front();
-    const glm::dvec3 middle = (extent.lower + extent.upper) * 0.5;
+    Light &sole = flat.lights.front();
+    if (sole.kind == CLR_LIGHT_PLANAR || sole.kind == CLR_LIGHT_TRIANGLE)
+        store(sole.position, (extent.lower + extent.upper) * 0.5);
     const glm::dvec3 diagonal = extent.upper - extent.lower;
-    for (int c = 0; c < 3; ++c)
-        flat.frame.sole_light[c] = static_cast<float>(middle[c]);
-    flat.frame.sole_light[3] = static_cast<float>(glm::dot(diagonal, diagonal));
+    flat.frame.final_distance2 = static_cast<float>(glm::dot(diagonal, diagonal));
     if (sole.kind == CLR_LIGHT_TRIANGLE)
         for (EmitterInfo &info : flat.emitters)
             info.density = info.density > 0 ? 1 / sole.area : 0.0f;

@@ -49,9 +49,9 @@ typedef struct {
     float filter_radius;  /* pixels */
     uint triangle_blocks; /* in the BVH's leaves */
     uint sphere_blocks;
-    float sole_light[4]; /* FINAL_BY_LIGHTS: the only light's middle, and the square of a distance
-                            from which it looks small */
-    uint pad2;
+    float final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
+                              looks small */
+    uint pad2[4];
 } FrameData;
 CLR_STATIC_SIZE(FrameData, 256);
 

@@ -95,9 +95,9 @@ CLR_STATIC_SIZE(Material, 64);
 #define CLR_LIGHT_TRIANGLE 3u
 
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
-   light triangles; bit k of `trail` is the child taken at level k of the light tree. Point:
-   radiance holds the intensity, times the square of the unit of length. Sphere: `area` holds the
-   radius. */
+   light triangles; bit k of `trail` is the child taken at level k of the light tree. `position` is
+   that of a point, the centre of a sphere, or the middle of the only light. Point: radiance holds
+   the intensity, times the square of the unit of length. Sphere: `area` holds the radius. */
 typedef struct {
     float position[3];
     uint kind;
