@@ -22,15 +22,16 @@
 /* Bounces whose numbers are spread evenly over the samples of a pixel. */
 #define ORDERED_BOUNCES 2
 
-/* Starting samples costs the same for one lane as for all, and lanes that start together need their
-   ordered numbers, and meet their lights, together. So new samples wait until lanes have stood idle
-   for about as many steps as that is worth, and are enough. Without a tree, steps cost less. */
-#if HAS_TRIANGLES || HAS_BVH_SPHERES
-#define REFILL_IDLE_STEPS (3 * LANES / 2)
-#else
-#define REFILL_IDLE_STEPS (2 * LANES)
-#endif
+/* Lanes that have to be idle before new samples are started. */
 #define REFILL_LANES ((LANES + 3) / 4)
+
+/* Whether lanes have stood idle for so many steps, all together, that new samples are due. Starting
+   them costs the same for one lane as for all, about a step; and lanes that have started together
+   need their ordered numbers, and meet their end, together, which is worth the more the longer
+   their paths are: so the wait grows with the steps of the busy lanes. */
+CLR_INLINE int refill_is_due(int idle_steps, int busy_steps) {
+    return idle_steps >= LANES + busy_steps / 3;
+}
 
 /* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
    of the last direction, infinite where the last vertex was specular or the camera, divided by the
@@ -478,12 +479,13 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);
-    int idle_steps = 0;
+    int idle_steps = 0, busy_steps = 0;
     for (;;) {
         const int idle = LANES - count_lanes(p.alive);
         idle_steps += idle;
-        if (idle == LANES || (idle >= REFILL_LANES && idle_steps >= REFILL_IDLE_STEPS)) {
-            idle_steps = 0;
+        busy_steps += LANES - idle;
+        if (idle == LANES || (idle >= REFILL_LANES && refill_is_due(idle_steps, busy_steps))) {
+            idle_steps = busy_steps = 0;
             paths_finish(scene, &p, &work, block, counters);
             if (work_left(&work))
                 paths_refill(scene, &p, &work);
