@@ -36,6 +36,14 @@ __kernel void probe_turn(__global const float *in, __global float *out, uint cou
     probe_out(turn_of(y, x), out, first, count, 1u, 0u);
 }
 
+/* in: squares of distance and radius; out: the cap that the sphere covers. */
+__kernel void probe_sphere_cap(__global const float *in, __global float *out, uint count) {
+    const uint first = (uint)get_global_id(0) * LANES;
+    real distance2 = probe_in(in, first, count, 2u, 0u);
+    real radius2 = probe_in(in, first, count, 2u, 1u);
+    probe_out(sphere_cap(distance2, sqrt(distance2), radius2), out, first, count, 1u, 0u);
+}
+
 /* out: number `dimension` of pixel i and sample i + `offset`. */
 __kernel void probe_sampler(__global float *out, uint seed, uint offset, uint dimension,
                             uint count) {

@@ -89,6 +89,35 @@ TEST_CASE("the turn of a vector is right to 6e-8", "[oclgrind]") {
     }
 }
 
+TEST_CASE("the cap that a sphere covers is right to 4e-7 of itself at any distance", "[oclgrind]") {
+    const ClTestDevice device;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform;
+    std::vector<float> squares;
+    for (int i = 0; i < (small_tests() ? 50 : 20000); ++i) {
+        const double distance2 = std::exp(uniform(random) * 40 - 20);
+        // From nearly touching to a ten thousandth of the distance.
+        const double sine2 = i % 2 == 0 ? uniform(random) : std::pow(10.0, -8 * uniform(random));
+        squares.push_back(static_cast<float>(distance2));
+        squares.push_back(static_cast<float>(distance2 * sine2));
+    }
+    const std::size_t count = squares.size() / 2;
+    for (const int lanes : widths) {
+        const std::vector<float> caps =
+            run_probe(device, "probe_sphere_cap", lanes, squares, count, 1);
+        double worst = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const long double sine2 = static_cast<long double>(squares[2 * i + 1]) / squares[2 * i];
+            if (sine2 >= 1)
+                continue;
+            const long double cap = 1 - std::sqrt(1 - sine2);
+            worst = std::max(worst, std::abs(static_cast<double>(caps[i] / cap - 1)));
+        }
+        INFO("width " << lanes);
+        CHECK(worst < 4e-7);
+    }
+}
+
 TEST_CASE("random numbers lie in [0, 1), are uniform and the same at every width", "[oclgrind]") {
     const ClTestDevice device;
     const std::size_t count = small_tests() ? 200 : 200000;
