@@ -293,16 +293,15 @@ CLR_INLINE void paths_add_light(const SceneData *scene, Paths *p, vec3 o, vec3 n
 CLR_INLINE void paths_add_direct(const SceneData *scene, Paths *p, vec3 o, vec3 n, int_l prim,
                                  LightSample light, mask_l final, mask_l parted) {
     paths_add_light(scene, p, o, n, prim, light, final, parted);
-#if LIGHT_SAMPLES > 1
-    const uint parts = any_lane(parted) ? LIGHT_SAMPLES : 1u;
-    for (uint part = 1u; part < parts; ++part) {
+    if (!any_lane(parted))
+        return;
+    for (uint part = 1u; part < LIGHT_SAMPLES; ++part) {
         BounceNumbers numbers;
         const Sampler sampler = sampler_of_part(p->sampler, part);
         sampler_get_light(sampler, &numbers);
         light = light_sample(scene, o, n, numbers, sampler, parted);
         paths_add_light(scene, p, o, n, prim, light, final, parted);
     }
-#endif
 }
 #endif
 

@@ -111,6 +111,7 @@ TEST_CASE("the cap that a sphere covers is right to 4e-7 of itself at any distan
             if (sine2 >= 1)
                 continue;
             const long double cap = 1 - std::sqrt(1 - sine2);
+            REQUIRE(caps[i] > 0.0f); // a NaN would be no maximum
             worst = std::max(worst, std::abs(static_cast<double>(caps[i] / cap - 1)));
         }
         INFO("width " << lanes);
