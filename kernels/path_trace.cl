@@ -366,14 +366,18 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
     Bsdf bsdf = bsdf_fetch(scene, surface, ipick(going, material, int_of(0)), going);
     mask_l back = lt(cosine, real_of(0.0f));
     vec3 n = v3_scale(surface.ns, copysign(real_of(1.0f), cosine));
-    mask_l parted = no_lanes();
-#if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l diffuse = going & bsdf_is(bsdf, CLR_BSDF_DIFFUSE);
+    BounceLanes lanes;
+    lanes.going = going;
+    lanes.directions = diffuse;
+    lanes.lobes = going & bsdf_is(bsdf, CLR_BSDF_DIELECTRIC);
+    lanes.parted = no_lanes();
+#if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     if (LIGHT_SAMPLES > 1)
-        parted = diffuse & p->first;
+        lanes.parted = diffuse & p->first;
 #endif
-    mask_l ordered = parted | (going & ilt(p->depth, int_of(ORDERED_BOUNCES)));
-    BounceNumbers numbers = sampler_bounce(p->sampler, ordered, parted);
+    lanes.ordered = lanes.parted | (going & ilt(p->depth, int_of(ORDERED_BOUNCES)));
+    BounceNumbers numbers = sampler_bounce(p->sampler, lanes);
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     mask_l final = paths_final(scene, p, surface, diffuse);
     vec3 light_o = ray_origin(surface, n);
@@ -393,8 +397,8 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
     p->o = v3_pick(moved, ray_origin(surface, sample.wo), p->o);
     p->d = v3_pick(moved, renormalize(sample.wo), p->d);
     p->self = ipick(moved, prim, p->self);
-    real pdf = pick(parted, sample.pdf * (1.0f / LIGHT_SAMPLES), sample.pdf);
-    p->first &= ~parted;
+    real pdf = pick(lanes.parted, sample.pdf * (1.0f / LIGHT_SAMPLES), sample.pdf);
+    p->first &= ~lanes.parted;
     p->prev_pdf = pick(moved, pdf, p->prev_pdf);
 #if LIGHT_COUNT == -1
     p->prev_n = v3_pick(moved, n, p->prev_n);
@@ -404,7 +408,7 @@ CLR_INLINE void paths_scatter(const SceneData *scene, Paths *p, Surface surface,
 
 #if HAS_LIGHTS && HAS_DIFFUSE && STRATEGY != 2
     if (any_lane(diffuse))
-        paths_add_direct(scene, p, light_o, n, prim, light, final, parted);
+        paths_add_direct(scene, p, light_o, n, prim, light, final, lanes.parted);
     p->alive &= ~final;
 #endif
     vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
