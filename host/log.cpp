@@ -3,11 +3,23 @@
 #include <atomic>
 #include <cstdio>
 #include <fmt/core.h>
+#include <utility>
 
 namespace clrender::log {
 
 namespace {
+
 std::atomic<Level> current_level{Level::normal};
+/// Where the messages of this thread go, if not to the terminal.
+thread_local std::string *holder = nullptr;
+
+void show(const std::string &line) {
+    if (holder != nullptr)
+        *holder += line;
+    else
+        fmt::print(stderr, "{}", line);
+}
+
 } // namespace
 
 void set_level(Level level) {
@@ -15,21 +27,36 @@ void set_level(Level level) {
 }
 
 void warn(const SourceLocation &where, const std::string &text) {
-    fmt::print(stderr, "{}: warning: {}\n", where.str(), text);
+    show(fmt::format("{}: warning: {}\n", where.str(), text));
 }
 
 void warn(const std::string &text) {
-    fmt::print(stderr, "clrender: warning: {}\n", text);
+    show(fmt::format("clrender: warning: {}\n", text));
 }
 
 void info(const std::string &text) {
     if (current_level != Level::quiet)
-        fmt::print(stderr, "{}\n", text);
+        show(text + "\n");
 }
 
 void detail(const std::string &text) {
     if (current_level == Level::verbose)
-        fmt::print(stderr, "{}\n", text);
+        show(text + "\n");
+}
+
+Holder::Holder() : outer_(std::exchange(holder, &kept_)) {}
+
+Holder::~Holder() {
+    holder = outer_;
+}
+
+std::string Holder::take() {
+    return std::exchange(kept_, {});
+}
+
+void pass_on(const std::string &kept) {
+    if (!kept.empty())
+        show(kept);
 }
 
 } // namespace clrender::log

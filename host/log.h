@@ -20,4 +20,23 @@ void info(const std::string &text);
 /// Shown only when `verbose`.
 void detail(const std::string &text);
 
+/// While it lives, the messages of the thread that has made it are kept. Others are not.
+class Holder {
+public:
+    Holder();
+    ~Holder();
+    Holder(const Holder &) = delete;
+    Holder &operator=(const Holder &) = delete;
+
+    /// What has been kept so far, for `pass_on`.
+    std::string take();
+
+private:
+    std::string kept_;
+    std::string *outer_;
+};
+
+/// Shows what a holder has kept.
+void pass_on(const std::string &kept);
+
 } // namespace clrender::log

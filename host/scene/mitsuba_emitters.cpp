@@ -4,6 +4,8 @@
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
+#include <fmt/core.h>
+
 namespace clrender::mitsuba {
 
 namespace {
@@ -73,11 +75,17 @@ void SceneReader::read_envmap(Properties &properties, Emitter &emitter) {
         properties.fail("scale", "is negative, expected no number below 0");
     emitter.to_world = properties.transform("to_world");
     properties.ignore({"mis_compensation"});
-    emitter.bitmap = load_image(properties.file("filename"), properties.where("filename"));
-    if (emitter.bitmap->width < 2 || emitter.bitmap->height < 3)
-        properties.fail("filename", "has " + std::to_string(emitter.bitmap->width) + "x" +
-                                        std::to_string(emitter.bitmap->height) +
-                                        " pixels, expected at least 2x3");
+    emitter.bitmap = files_.image(properties.file("filename"), properties.where("filename"));
+}
+
+void SceneReader::check_envmaps() const {
+    for (const Emitter &emitter : scene_.emitters)
+        if (emitter.kind == EmitterKind::envmap &&
+            (emitter.bitmap->width < 2 || emitter.bitmap->height < 3))
+            throw InputError(emitter.where,
+                             fmt::format("the image of the envmap has {}x{} pixels, expected at "
+                                         "least 2x3",
+                                         emitter.bitmap->width, emitter.bitmap->height));
 }
 
 int SceneReader::read_area_emitter(int object, int shape) {

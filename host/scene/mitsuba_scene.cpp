@@ -3,12 +3,15 @@
 #include "../log.h"
 #include "mitsuba_text.h"
 
+#include <tbb/parallel_for.h>
+
 namespace clrender::mitsuba {
 
 Scene SceneReader::read() {
     Properties root(document_, 0);
     read_shapes(root);
     read_scene_emitters(root);
+    read_files();
     read_view(root);
     check_unused_bsdfs(root);
 
@@ -47,6 +50,14 @@ void SceneReader::read_scene_emitters(Properties &root) {
     for (const Child *child : root.children("emitter"))
         if (seen.insert(child->object).second)
             read_emitter(child->object);
+}
+
+void SceneReader::read_files() {
+    files_.read();
+    check_envmaps();
+    tbb::parallel_for(std::size_t(0), shapes_from_files_.size(), [&](std::size_t i) {
+        follow_transform(scene_.shapes[shapes_from_files_[i]]);
+    });
 }
 
 void SceneReader::read_view(Properties &root) {

@@ -1,17 +1,17 @@
 #pragma once
 /// From the objects of a scene file to a Scene. Each kind of object has its own .cpp file.
 
-#include "mesh_io.h"
 #include "mitsuba_document.h"
 #include "mitsuba_properties.h"
 #include "scene.h"
+#include "scene_files.h"
 #include "spectrum.h"
 
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
-#include <tuple>
+#include <vector>
 
 namespace clrender::mitsuba {
 
@@ -26,6 +26,7 @@ private:
     // mitsuba_scene.cpp
     void read_shapes(Properties &root);
     void read_scene_emitters(Properties &root);
+    void read_files();
     void read_view(Properties &root);
     void check_unused_bsdfs(Properties &root);
     void place_default_sensor();
@@ -42,7 +43,6 @@ private:
     /// The same where only one colour for the whole surface is supported.
     Rgb read_constant(Properties &properties, const std::string &name, SpectrumUse use,
                       const Rgb &fallback);
-    std::shared_ptr<const Image> load_image(const std::string &path, const SourceLocation &where);
 
     // mitsuba_bsdfs.cpp; all return indices into Scene::bsdfs
     int read_bsdf(int object);
@@ -63,6 +63,7 @@ private:
     int read_area_emitter(int object, int shape);
     void read_point(Properties &properties, Emitter &emitter);
     void read_envmap(Properties &properties, Emitter &emitter);
+    void check_envmaps() const;
 
     // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
     void read_sensor(int object);
@@ -76,12 +77,15 @@ private:
     std::map<int, int> bsdfs_, textures_; ///< by object
     std::map<double, int> default_bsdfs_; ///< by reflectance
     std::set<int> open_bsdfs_, area_emitters_;
-    std::map<std::string, std::shared_ptr<const Image>> images_;
-    std::map<std::tuple<std::string, bool, bool>, std::shared_ptr<const Mesh>> meshes_;
+    SceneFiles files_;
+    std::vector<std::size_t> shapes_from_files_; ///< places in Scene::shapes
 };
 
 /// One of the reconstruction filters.
 ReconstructionFilter read_filter(const Document &document, int object);
+
+/// Gives a shape from a mesh file the normals that Mitsuba gives it after `to_world`.
+void follow_transform(Shape &shape);
 
 /// The world-space box around all shapes; false if there are none.
 bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest);

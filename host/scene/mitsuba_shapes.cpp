@@ -31,26 +31,6 @@ bool is_similarity(const glm::dmat3 &m) {
     return true;
 }
 
-/// Mitsuba computes the normals of a mesh that states none after `to_world`, where reflections turn
-/// them and stretching weighs the triangles differently. Such a mesh gets its own normals, in
-/// object space, that become those.
-void follow_transform(Shape &shape) {
-    const glm::dmat3 linear(shape.to_world);
-    const Mesh &mesh = *shape.mesh;
-    const bool keeps_normals = is_similarity(linear) && glm::determinant(linear) > 0;
-    if (keeps_normals || mesh.normals.empty() || mesh.normals != smooth_normals(mesh))
-        return;
-
-    auto placed = std::make_shared<Mesh>(mesh);
-    for (glm::dvec3 &position : placed->positions)
-        position = glm::dvec3(shape.to_world * glm::dvec4(position, 1));
-    placed->normals = smooth_normals(*placed);
-    for (glm::vec3 &normal : placed->normals)
-        normal = glm::vec3(glm::normalize(glm::transpose(linear) * glm::dvec3(normal)));
-    placed->positions = mesh.positions;
-    shape.mesh = std::move(placed);
-}
-
 void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
     lowest = glm::min(lowest, point);
     highest = glm::max(highest, point);
@@ -101,22 +81,13 @@ void SceneReader::read_sphere(Properties &properties, Shape &shape) {
 }
 
 void SceneReader::read_mesh_file(Properties &properties, Shape &shape) {
-    const bool is_obj = properties.object().type == "obj";
+    const auto format = properties.object().type == "obj" ? MeshFormat::obj : MeshFormat::ply;
     MeshReadOptions options;
     options.face_normals = properties.boolean("face_normals", false);
-    options.flip_tex_coords = properties.boolean("flip_tex_coords", is_obj);
+    options.flip_tex_coords = properties.boolean("flip_tex_coords", format == MeshFormat::obj);
     const std::string path = properties.file("filename");
-
-    // Shapes that show the same file in the same way share it.
-    std::shared_ptr<const Mesh> &mesh = meshes_[std::make_tuple(
-        properties.object().type + ":" + path, options.face_normals, options.flip_tex_coords)];
-    if (!mesh) {
-        const SourceLocation where = properties.where("filename");
-        mesh = std::make_shared<const Mesh>(is_obj ? read_obj_mesh(path, options, where)
-                                                   : read_ply_mesh(path, options, where));
-    }
-    shape.mesh = mesh;
-    follow_transform(shape);
+    shapes_from_files_.push_back(scene_.shapes.size());
+    shape.mesh = files_.mesh(format, path, options, properties.where("filename"));
 }
 
 void SceneReader::read_surface(Properties &properties, Shape &shape) {
@@ -137,6 +108,26 @@ void SceneReader::read_surface(Properties &properties, Shape &shape) {
     // Without a BSDF a light is black, anything else is grey.
     shape.bsdf =
         !bsdfs.empty() ? read_bsdf(bsdfs[0]->object) : default_bsdf(shape.emitter != none ? 0 : .5);
+}
+
+/// Mitsuba computes the normals of a mesh that states none after `to_world`, where reflections turn
+/// them and stretching weighs the triangles differently. Such a mesh gets its own normals, in
+/// object space, that become those.
+void follow_transform(Shape &shape) {
+    const glm::dmat3 linear(shape.to_world);
+    const Mesh &mesh = *shape.mesh;
+    const bool keeps_normals = is_similarity(linear) && glm::determinant(linear) > 0;
+    if (keeps_normals || mesh.normals.empty() || mesh.normals != smooth_normals(mesh))
+        return;
+
+    auto placed = std::make_shared<Mesh>(mesh);
+    for (glm::dvec3 &position : placed->positions)
+        position = glm::dvec3(shape.to_world * glm::dvec4(position, 1));
+    placed->normals = smooth_normals(*placed);
+    for (glm::vec3 &normal : placed->normals)
+        normal = glm::vec3(glm::normalize(glm::transpose(linear) * glm::dvec3(normal)));
+    placed->positions = mesh.positions;
+    shape.mesh = std::move(placed);
 }
 
 bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest) {

@@ -127,7 +127,7 @@ int SceneReader::read_bitmap(Properties &properties) {
     properties.ignore({"accel"});
     const std::string path = properties.file("filename");
     if (load_images_)
-        texture.bitmap = load_image(path, properties.where("filename"));
+        texture.bitmap = files_.image(path, properties.where("filename"));
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;
 }
@@ -151,43 +151,6 @@ int SceneReader::read_spectrum_object(Properties &properties, SpectrumUse use) {
     const Rgb value(properties.number(name, 1));
     check_range(properties, name, value, use, false);
     return add_constant(value);
-}
-
-namespace {
-
-/// Refuses what is no number, which would spread over the whole picture, and takes what is negative
-/// for black, as filters that ring leave it behind.
-void check_values(Image &image, const std::string &path, const SourceLocation &where) {
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const auto width = static_cast<std::size_t>(image.width);
-    std::size_t negative = 0;
-    for (std::size_t i = 0; i < image.f32.size(); ++i) {
-        float &value = image.f32[i];
-        if (!std::isfinite(value)) {
-            const std::size_t pixel = i / channels;
-            throw InputError(where, fmt::format("{}: pixel ({}, {}) is {}, expected finite values",
-                                                path, pixel % width, pixel / width, value));
-        }
-        if (value < 0) {
-            value = 0;
-            ++negative;
-        }
-    }
-    if (negative > 0)
-        log::warn(where, fmt::format("{}: {} negative values count as 0", path, negative));
-}
-
-} // namespace
-
-std::shared_ptr<const Image> SceneReader::load_image(const std::string &path,
-                                                     const SourceLocation &where) {
-    std::shared_ptr<const Image> &image = images_[path];
-    if (!image) {
-        Image read = read_image(path, where);
-        check_values(read, path, where);
-        image = std::make_shared<const Image>(std::move(read));
-    }
-    return image;
 }
 
 } // namespace clrender::mitsuba

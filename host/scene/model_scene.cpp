@@ -1,6 +1,7 @@
 #include "model_scene.h"
 
 #include "mesh_io.h"
+#include "scene_files.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -73,7 +74,7 @@ bool is_mirror(const ObjMaterial &m) {
     return m.illum == 5 || (!has_diffuse && brightest(m.specular) > 0.5);
 }
 
-int add_material(Scene &scene, const ObjMaterial &material) {
+int add_material(Scene &scene, const ObjMaterial &material, SceneFiles &files) {
     const auto reflectance = [](const Rgb &c) { return glm::clamp(c, 0.0, 1.0); };
     Bsdf bsdf;
     bsdf.id = material.name;
@@ -93,7 +94,7 @@ int add_material(Scene &scene, const ObjMaterial &material) {
 
     Texture texture;
     texture.kind = TextureKind::bitmap;
-    texture.bitmap = std::make_shared<const Image>(read_image(material.diffuse_map));
+    texture.bitmap = files.image(material.diffuse_map);
     scene.textures.push_back(std::move(texture));
     return add_diffuse(scene, static_cast<int>(scene.textures.size()) - 1);
 }
@@ -125,6 +126,7 @@ glm::dmat4 look_along(const glm::dvec3 &origin, const glm::dvec3 &direction) {
 }
 
 void add_model(Scene &scene, ObjFile &model) {
+    SceneFiles files;
     std::map<std::string, const ObjMaterial *> materials;
     for (const ObjMaterial &material : model.materials)
         materials.try_emplace(material.name, &material);
@@ -135,7 +137,7 @@ void add_model(Scene &scene, ObjFile &model) {
         const auto found = materials.find(part.material);
         const ObjMaterial *material = found == materials.end() ? nullptr : found->second;
         if (material != nullptr && bsdfs.count(part.material) == 0)
-            bsdfs[part.material] = add_material(scene, *material);
+            bsdfs[part.material] = add_material(scene, *material, files);
         Shape &shape = add_shape(scene, ShapeKind::mesh, glm::dmat4(1.0),
                                  material ? bsdfs[part.material] : default_bsdf);
         shape.mesh = std::make_shared<const Mesh>(std::move(part.mesh));
@@ -144,6 +146,7 @@ void add_model(Scene &scene, ObjFile &model) {
             std::max({material->emission.r, material->emission.g, material->emission.b}) > 0)
             add_light(scene, glm::max(material->emission, 0.0));
     }
+    files.read();
 }
 
 void add_surroundings(Scene &scene, const Bounds &bounds) {

@@ -1,8 +1,12 @@
 #include "scene/model_scene.h"
 
+#include "files.h"
+
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstring>
+#include <limits>
 
 using namespace clrender;
 
@@ -61,4 +65,33 @@ TEST_CASE("glass and mirrors from an MTL", "[model]") {
     const Bsdf &mirror = scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)];
     CHECK(mirror.kind == BsdfKind::conductor);
     CHECK(mirror.perfect_mirror);
+}
+
+TEST_CASE("textures of a model are read once, and checked", "[model]") {
+    const test::ScratchFolder folder;
+    const std::string model = folder.file("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                                   "usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n");
+    const std::string materials =
+        folder.file("m.mtl", "newmtl a\nmap_Kd t.pfm\nnewmtl b\nmap_Kd t.pfm\n");
+    CAPTURE(materials);
+    const auto write_texture = [&](float value) {
+        std::string bytes(3 * sizeof(float), '\0');
+        for (std::size_t i = 0; i < 3; ++i)
+            std::memcpy(&bytes[i * sizeof(float)], &value, sizeof(float));
+        return folder.file("t.pfm", "PF\n1 1\n-1\n" + bytes);
+    };
+
+    write_texture(0.5F);
+    const Scene scene = load_model(model);
+    std::vector<std::shared_ptr<const Image>> bitmaps;
+    for (const Texture &texture : scene.textures)
+        if (texture.bitmap)
+            bitmaps.push_back(texture.bitmap);
+    REQUIRE(bitmaps.size() == 2);
+    CHECK(bitmaps[0] == bitmaps[1]);
+    CHECK(bitmaps[0]->f32.at(0) == 0.5F);
+
+    const std::string bad = write_texture(std::numeric_limits<float>::quiet_NaN());
+    CHECK(test::error_of([&] { load_model(model); }) ==
+          bad + ": pixel (0, 0) is nan, expected finite values");
 }

@@ -1,0 +1,34 @@
+#pragma once
+/// The meshes and images that a scene names, each read once.
+
+#include "file_reads.h"
+#include "mesh_io.h"
+#include "scene.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+
+namespace clrender {
+
+enum class MeshFormat { obj, ply };
+
+class SceneFiles {
+public:
+    /// What these return is empty until `read`. `where` is the line that names the file.
+    std::shared_ptr<const Image> image(const std::string &path, const SourceLocation &where = {});
+    std::shared_ptr<const Mesh> mesh(MeshFormat format, const std::string &path,
+                                     const MeshReadOptions &options, const SourceLocation &where);
+
+    /// Reads all that has been asked for since. Images have only finite values that are not
+    /// negative. Throws InputError, of the file that was asked for first if several are bad.
+    void read();
+
+private:
+    FileReads reads_;
+    std::map<std::string, std::shared_ptr<const Image>> images_;
+    std::map<std::tuple<std::string, MeshFormat, bool, bool>, std::shared_ptr<const Mesh>> meshes_;
+};
+
+} // namespace clrender
