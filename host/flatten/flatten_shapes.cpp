@@ -1,5 +1,6 @@
 #include "flatten_parts.h"
 #include "log.h"
+#include "shadowless_planars.h"
 
 #include <algorithm>
 #include <cmath>
@@ -213,14 +214,29 @@ void flatten_spheres(Flattening &work, bool in_bvh) {
     }
 }
 
+/// The planars' shapes in the order of their primitives: those that cast no shadows last.
+std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_in_bvh,
+                                       KernelConfig &config) {
+    const Scene &scene = work.scene;
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const ShapeKind kind = scene.shapes[i].kind;
+        if (kind == ShapeKind::disk || (kind == ShapeKind::rectangle && !rectangles_in_bvh))
+            order.push_back(i);
+    }
+    if (order.empty())
+        return order;
+    const std::vector<bool> shadowless = shadowless_planars(scene);
+    const auto last = std::stable_partition(order.begin(), order.end(),
+                                            [&](std::size_t i) { return !shadowless[i]; });
+    config.SHADOWLESS_PLANAR_COUNT = static_cast<int>(order.end() - last);
+    return order;
+}
+
 void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
     FlatScene &flat = work.flat;
-    for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
+    for (const std::size_t i : order_planars(work, rectangles_in_bvh, flat.config)) {
         const Shape &shape = work.scene.shapes[i];
-        const bool lane_wise = shape.kind == ShapeKind::disk ||
-                               (shape.kind == ShapeKind::rectangle && !rectangles_in_bvh);
-        if (!lane_wise)
-            continue;
         work.primitive_of_shape[static_cast<int>(i)] = append_shape(shape, work);
         flat.planars.push_back(flatten_planar(shape, flat.placement));
         if (shape.kind == ShapeKind::disk)

@@ -52,3 +52,17 @@ TEST_CASE("a kernel that can do one thing more gives the same picture") {
         check_same(name, scene, {.spp = 16, .lanes = 1}, {name});
     }
 }
+
+TEST_CASE("walls that are left out of shadow tests change no bit") {
+    // Lights of several kinds in rooms and above floors, with and without a hierarchy.
+    const std::string name = GENERATE(as<std::string>(), "lights_many", "dielectrics", "meshes_obj",
+                                      "hide_area", "roulette");
+    INFO(name);
+    const Scene scene = load_scene(std::string(CLRENDER_TEST_DIR) + "/references/" + name + ".xml");
+    const TestRender without{.spp = 16, .lanes = 8};
+    TestRender with = without;
+    with.generality = {"SHADOWLESS_PLANAR_COUNT"};
+    const Image a = render_measured(scene, without).mean;
+    const Image b = render_measured(scene, with).mean;
+    CHECK(a.f32 == b.f32);
+}
