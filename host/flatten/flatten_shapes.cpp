@@ -89,6 +89,10 @@ Planar flatten_planar(const Shape &shape, const Placement &placement) {
     const double area2 = glm::dot(across, across);
     store(p.ra, glm::cross(dv, across) / area2);
     store(p.rb, glm::cross(across, du) / area2);
+    const glm::dvec3 half = glm::abs(du) + glm::abs(dv);
+    p.half_x = static_cast<float>(half.x);
+    p.half_y = static_cast<float>(half.y);
+    p.half_z = static_cast<float>(half.z);
     return p;
 }
 
@@ -214,7 +218,28 @@ void flatten_spheres(Flattening &work, bool in_bvh) {
     }
 }
 
-/// The planars' shapes in the order of their primitives: those that cast no shadows last.
+/// The axis that the vector lies along, 0 to 2, or none.
+int axis_of(const glm::dvec3 &v) {
+    constexpr double aslant = 1e-9; // less than float32 coordinates show
+    const glm::dvec3 size = glm::abs(v);
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::max(size[(axis + 1) % 3], size[(axis + 2) % 3]) <= aslant * size[axis])
+            return axis;
+    return none;
+}
+
+/// The two bits of PLANAR_AXES.
+unsigned axis_bits(const Shape &shape) {
+    const int u = axis_of(glm::dvec3(shape.to_world[0]));
+    const int v = axis_of(glm::dvec3(shape.to_world[1]));
+    if (shape.kind != ShapeKind::rectangle || u == none || v == none || u == v)
+        return 0;
+    const int across = 3 - u - v;
+    return static_cast<unsigned>(across) + 1;
+}
+
+/// The planars' shapes in the order of their primitives: those that cast no shadows last, and for
+/// each kind of test one after the other, so that like scenes need the same kernel.
 std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_in_bvh,
                                        KernelConfig &config) {
     const Scene &scene = work.scene;
@@ -224,12 +249,20 @@ std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_i
         if (kind == ShapeKind::disk || (kind == ShapeKind::rectangle && !rectangles_in_bvh))
             order.push_back(i);
     }
-    if (order.empty())
-        return order;
-    const std::vector<bool> shadowless = shadowless_planars(scene);
-    const auto last = std::stable_partition(order.begin(), order.end(),
-                                            [&](std::size_t i) { return !shadowless[i]; });
-    config.SHADOWLESS_PLANAR_COUNT = static_cast<int>(order.end() - last);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return axis_bits(scene.shapes[a]) < axis_bits(scene.shapes[b]);
+    });
+    if (!order.empty()) {
+        const std::vector<bool> shadowless = shadowless_planars(scene);
+        const auto last = std::stable_partition(order.begin(), order.end(),
+                                                [&](std::size_t i) { return !shadowless[i]; });
+        config.SHADOWLESS_PLANAR_COUNT = static_cast<int>(order.end() - last);
+    }
+    unsigned axes = 0; // where there are more planars than bits, they are disks, and have none
+    for (std::size_t i = 0; i < order.size(); ++i)
+        if (const unsigned bits = axis_bits(scene.shapes[order[i]]); bits != 0)
+            axes |= bits << (2 * i);
+    config.PLANAR_AXES = static_cast<int>(axes);
     return order;
 }
 

@@ -23,6 +23,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(WIDE_COUNT, 0),
         CLR_SETTING(SHADOW_FREE_COUNT, 0),
         CLR_SETTING(SHADOWLESS_PLANAR_COUNT, 0),
+        CLR_SETTING(PLANAR_AXES, 0),
         CLR_SETTING(HAS_DISKS, 1),
         CLR_SETTING(HAS_TRIANGLES, 1),
         CLR_SETTING(HAS_BVH_SPHERES, 1),

@@ -36,13 +36,13 @@ typedef struct {
     float normal[3];
     float area;
     float du[3];
-    float pad0;
+    float half_x; /* how far it reaches along the coordinate axes: |du| + |dv|, by components */
     float dv[3];
-    float pad1;
+    float half_y;
     float ra[3];
-    float pad2;
+    float half_z;
     float rb[3];
-    float pad3;
+    float pad;
 } Planar;
 CLR_STATIC_SIZE(Planar, 96);
 
