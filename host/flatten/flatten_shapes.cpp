@@ -15,6 +15,9 @@ namespace {
 /// As many spheres, and as many rectangles and disks, are tested by every ray; more go into the
 /// BVH.
 constexpr std::ptrdiff_t few_primitives = 16;
+/// Less than float32 shows of the renderer's units where the camera looks, within one of the
+/// origin.
+constexpr double unseen = 0x1p-22;
 
 constexpr float missing = std::numeric_limits<float>::quiet_NaN();
 
@@ -218,20 +221,21 @@ void flatten_spheres(Flattening &work, bool in_bvh) {
     }
 }
 
-/// The axis that the vector lies along, 0 to 2, or none.
+/// The axis that the vector, in the renderer's units, lies along, 0 to 2, or none.
 int axis_of(const glm::dvec3 &v) {
-    constexpr double aslant = 1e-9; // less than float32 coordinates show
+    constexpr double aslant = 1e-9;
     const glm::dvec3 size = glm::abs(v);
     for (int axis = 0; axis < 3; ++axis)
-        if (std::max(size[(axis + 1) % 3], size[(axis + 2) % 3]) <= aslant * size[axis])
+        if (std::max(size[(axis + 1) % 3], size[(axis + 2) % 3]) <=
+            std::min(aslant * size[axis], unseen))
             return axis;
     return none;
 }
 
 /// The two bits of PLANAR_AXES.
-unsigned axis_bits(const Shape &shape) {
-    const int u = axis_of(glm::dvec3(shape.to_world[0]));
-    const int v = axis_of(glm::dvec3(shape.to_world[1]));
+unsigned axis_bits(const Shape &shape, const Placement &placement) {
+    const int u = axis_of(glm::dvec3(shape.to_world[0]) * placement.scale);
+    const int v = axis_of(glm::dvec3(shape.to_world[1]) * placement.scale);
     if (shape.kind != ShapeKind::rectangle || u == none || v == none || u == v)
         return 0;
     const int across = 3 - u - v;
@@ -249,18 +253,20 @@ std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_i
         if (kind == ShapeKind::disk || (kind == ShapeKind::rectangle && !rectangles_in_bvh))
             order.push_back(i);
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return axis_bits(scene.shapes[a]) < axis_bits(scene.shapes[b]);
-    });
+    const auto bits_of = [&](std::size_t i) {
+        return axis_bits(scene.shapes[i], work.flat.placement);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return bits_of(a) < bits_of(b); });
     if (!order.empty()) {
-        const std::vector<bool> shadowless = shadowless_planars(scene);
-        const auto last = std::stable_partition(order.begin(), order.end(),
-                                                [&](std::size_t i) { return !shadowless[i]; });
+        const ShadowlessPlanars shadowless(scene, unseen / work.flat.placement.scale);
+        const auto last = std::stable_partition(
+            order.begin(), order.end(), [&](std::size_t i) { return !shadowless.contains(i); });
         config.SHADOWLESS_PLANAR_COUNT = static_cast<int>(order.end() - last);
     }
     unsigned axes = 0; // where there are more planars than bits, they are disks, and have none
     for (std::size_t i = 0; i < order.size(); ++i)
-        if (const unsigned bits = axis_bits(scene.shapes[order[i]]); bits != 0)
+        if (const unsigned bits = bits_of(order[i]); bits != 0)
             axes |= bits << (2 * i);
     config.PLANAR_AXES = static_cast<int>(axes);
     return order;

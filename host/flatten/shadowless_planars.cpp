@@ -2,90 +2,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace clrender {
 
 namespace {
 
-/// How far beyond a plane counts as in it, relative to the largest coordinate: what float32
-/// coordinates in files lose.
-constexpr double touching = 1e-6;
+/// What sums and products of doubles lose, relative to the largest of them.
+constexpr double lost_by_doubles = 1e-14;
 
-/// The range of n . x, less that of the plane, over what has been added.
-class Sides {
-public:
-    explicit Sides(const Shape &planar)
-        : normal_(glm::normalize(
-              glm::cross(glm::dvec3(planar.to_world[0]), glm::dvec3(planar.to_world[1])))),
-          place_(glm::dot(normal_, glm::dvec3(planar.to_world[3]))) {}
-
-    void add(const glm::dvec3 &point, double radius = 0) {
-        const double distance = glm::dot(normal_, point) - place_;
-        low_ = std::min(low_, distance - radius);
-        high_ = std::max(high_, distance + radius);
-    }
-
-    void add(const Shape &shape) {
-        const glm::dvec3 center(shape.to_world[3]);
-        const glm::dvec3 du(shape.to_world[0]);
-        const glm::dvec3 dv(shape.to_world[1]);
-        switch (shape.kind) {
-        case ShapeKind::sphere:
-            add(center, glm::length(du));
-            break;
-        case ShapeKind::rectangle:
-        case ShapeKind::disk: // within the rectangle around it
-            for (const double u : {-1.0, 1.0})
-                for (const double v : {-1.0, 1.0})
-                    add(center + u * du + v * dv);
-            break;
-        case ShapeKind::mesh:
-            add_vertices(shape);
-            break;
-        }
-    }
-
-    [[nodiscard]] bool all_on_one(double tolerance) const {
-        return low_ >= -tolerance || high_ <= tolerance;
-    }
-
-private:
-    void add_vertices(const Shape &shape) {
-        const glm::dvec3 normal = glm::transpose(glm::dmat3(shape.to_world)) * normal_;
-        const double place = place_ - glm::dot(normal_, glm::dvec3(shape.to_world[3]));
-        for (const glm::dvec3 &position : shape.mesh->positions) {
-            const double distance = glm::dot(normal, position) - place;
-            low_ = std::min(low_, distance);
-            high_ = std::max(high_, distance);
-        }
-    }
-
-    glm::dvec3 normal_;
-    double place_;
-    double low_ = 0, high_ = 0;
-};
-
-double largest_coordinate(const Shape &planar) {
-    double largest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        largest = std::max(largest, std::abs(planar.to_world[3][axis]) +
-                                        std::abs(planar.to_world[0][axis]) +
-                                        std::abs(planar.to_world[1][axis]));
-    return largest;
+double largest(const glm::dvec3 &v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-bool is_outer(const Scene &scene, const Shape &planar) {
-    const double tolerance = touching * largest_coordinate(planar);
-    Sides sides(planar);
-    for (const Emitter &emitter : scene.emitters)
-        if (emitter.kind == EmitterKind::point)
-            sides.add(emitter.position);
-    for (const Shape &shape : scene.shapes) {
-        sides.add(shape);
-        if (!sides.all_on_one(tolerance))
-            return false;
+/// Whether what has been added reaches to either side of a plane.
+class Sides {
+public:
+    Sides(const Shape &planar, double touching)
+        : normal_(glm::normalize(
+              glm::cross(glm::dvec3(planar.to_world[0]), glm::dvec3(planar.to_world[1])))),
+          origin_(planar.to_world[3]), touching_(touching) {
+        // The normal's own rounding shows at the far corners.
+        for (const int axis : {0, 1, 3})
+            touching_ += lost_by_doubles * largest(glm::dvec3(planar.to_world[axis]));
     }
-    return true;
+
+    /// A point of the world, or a ball around it.
+    void add(const glm::dvec3 &point, double radius = 0) {
+        const double distance = glm::dot(normal_, point - origin_);
+        const double tolerance = touching_ + lost_by_doubles * (largest(point) + radius);
+        below_ |= distance - radius < -tolerance;
+        above_ |= distance + radius > tolerance;
+    }
+
+    [[nodiscard]] bool both() const { return below_ && above_; }
+
+private:
+    glm::dvec3 normal_, origin_;
+    double touching_;
+    bool below_ = false, above_ = false;
+};
+
+glm::dvec3 placed(const Shape &shape, const glm::dvec3 &position) {
+    return {shape.to_world * glm::dvec4(position, 1)};
 }
 
 /// The shape that alone shines, but for a constant environment, which is not sampled; or none.
@@ -103,18 +62,62 @@ int sole_light(const Scene &scene) {
 
 } // namespace
 
-std::vector<bool> shadowless_planars(const Scene &scene) {
-    std::vector<bool> shadowless(scene.shapes.size(), false);
-    for (const Emitter &emitter : scene.emitters)
-        if (emitter.kind == EmitterKind::envmap)
-            return shadowless;
-    const int light = sole_light(scene);
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-        const Shape &shape = scene.shapes[i];
-        if (shape.kind == ShapeKind::rectangle || shape.kind == ShapeKind::disk)
-            shadowless[i] = static_cast<int>(i) == light || is_outer(scene, shape);
+ShadowlessPlanars::ShadowlessPlanars(const Scene &scene, double touching)
+    : scene_(scene), touching_(touching), sole_light_(sole_light(scene)) {
+    has_map_ =
+        std::any_of(scene.emitters.begin(), scene.emitters.end(),
+                    [](const Emitter &emitter) { return emitter.kind == EmitterKind::envmap; });
+    for (const Shape &shape : scene.shapes) {
+        if (shape.kind != ShapeKind::mesh || boxes_.count(shape.mesh.get()) != 0)
+            continue;
+        glm::dvec3 low(std::numeric_limits<double>::infinity());
+        glm::dvec3 high = -low;
+        for (const glm::dvec3 &position : shape.mesh->positions) {
+            low = glm::min(low, position);
+            high = glm::max(high, position);
+        }
+        auto &corners = boxes_[shape.mesh.get()];
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            corners[i] = {(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                          (i & 4) != 0 ? high.z : low.z};
     }
-    return shadowless;
+}
+
+bool ShadowlessPlanars::is_outer(const Shape &planar) const {
+    Sides sides(planar, touching_);
+    for (const Emitter &emitter : scene_.emitters)
+        if (emitter.kind == EmitterKind::point)
+            sides.add(emitter.position);
+    for (const Shape &shape : scene_.shapes) {
+        const glm::dvec3 center(shape.to_world[3]);
+        if (shape.kind == ShapeKind::sphere) {
+            sides.add(center, glm::length(glm::dvec3(shape.to_world[0])));
+        } else if (shape.kind != ShapeKind::mesh) {
+            // A disk lies within the rectangle around it.
+            for (const double u : {-1.0, 1.0})
+                for (const double v : {-1.0, 1.0})
+                    sides.add(placed(shape, {u, v, 0}));
+        } else if (!shape.mesh->positions.empty()) {
+            Sides with_box = sides;
+            for (const glm::dvec3 &corner : boxes_.at(shape.mesh.get()))
+                with_box.add(placed(shape, corner));
+            if (with_box.both()) // the box may reach farther than the mesh
+                for (const glm::dvec3 &position : shape.mesh->positions)
+                    sides.add(placed(shape, position));
+            else
+                sides = with_box;
+        }
+        if (sides.both())
+            return false;
+    }
+    return true;
+}
+
+bool ShadowlessPlanars::contains(std::size_t shape) const {
+    const Shape &planar = scene_.shapes.at(shape);
+    if (has_map_ || (planar.kind != ShapeKind::rectangle && planar.kind != ShapeKind::disk))
+        return false;
+    return static_cast<int>(shape) == sole_light_ || is_outer(planar);
 }
 
 } // namespace clrender

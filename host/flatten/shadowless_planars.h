@@ -3,13 +3,32 @@
 
 #include "scene/scene.h"
 
+#include <array>
+#include <cstddef>
+#include <map>
 #include <vector>
 
 namespace clrender {
 
-/// Which of the scene's shapes are rectangles or disks that never come between a point of a surface
-/// and a point of a light: all shapes and point lights lie in its plane or on one side of it, or it
-/// is the only light itself. None is, where light comes from outside of the scene and is sampled.
-[[nodiscard]] std::vector<bool> shadowless_planars(const Scene &scene);
+/// The rectangles and disks of a scene that never come between a point of a surface and a point of
+/// a light: all shapes and point lights lie in their plane or on one side of it, or they are the
+/// only light themselves. None does, where light comes from outside of the scene and is sampled.
+class ShadowlessPlanars {
+public:
+    /// Whatever reaches through a plane by no more than `touching` counts as lying on one side.
+    ShadowlessPlanars(const Scene &scene, double touching);
+
+    /// Whether `shape`, an index into Scene::shapes, is one of them.
+    [[nodiscard]] bool contains(std::size_t shape) const;
+
+private:
+    [[nodiscard]] bool is_outer(const Shape &planar) const;
+
+    const Scene &scene_;
+    double touching_;
+    bool has_map_ = false;
+    int sole_light_ = none;
+    std::map<const Mesh *, std::array<glm::dvec3, 8>> boxes_; ///< their corners, in their own space
+};
 
 } // namespace clrender

@@ -76,16 +76,11 @@ void SceneReader::read_envmap(Properties &properties, Emitter &emitter) {
     emitter.to_world = properties.transform("to_world");
     properties.ignore({"mis_compensation"});
     emitter.bitmap = files_.image(properties.file("filename"), properties.where("filename"));
-}
-
-void SceneReader::check_envmaps() const {
-    for (const Emitter &emitter : scene_.emitters)
-        if (emitter.kind == EmitterKind::envmap &&
-            (emitter.bitmap->width < 2 || emitter.bitmap->height < 3))
-            throw InputError(emitter.where,
-                             fmt::format("the image of the envmap has {}x{} pixels, expected at "
-                                         "least 2x3",
-                                         emitter.bitmap->width, emitter.bitmap->height));
+    files_.then([properties, image = emitter.bitmap] {
+        if (image->width < 2 || image->height < 3)
+            properties.fail("filename", fmt::format("has {}x{} pixels, expected at least 2x3",
+                                                    image->width, image->height));
+    });
 }
 
 int SceneReader::read_area_emitter(int object, int shape) {

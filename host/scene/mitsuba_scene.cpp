@@ -54,7 +54,6 @@ void SceneReader::read_scene_emitters(Properties &root) {
 
 void SceneReader::read_files() {
     files_.read();
-    check_envmaps();
     tbb::parallel_for(std::size_t(0), shapes_from_files_.size(), [&](std::size_t i) {
         follow_transform(scene_.shapes[shapes_from_files_[i]]);
     });

@@ -63,7 +63,6 @@ private:
     int read_area_emitter(int object, int shape);
     void read_point(Properties &properties, Emitter &emitter);
     void read_envmap(Properties &properties, Emitter &emitter);
-    void check_envmaps() const;
 
     // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
     void read_sensor(int object);

@@ -3,7 +3,9 @@
 #include "../log.h"
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/core.h>
+#include <utility>
 
 namespace clrender {
 
@@ -33,11 +35,16 @@ void check_values(Image &image, const std::string &path, const SourceLocation &r
         log::warn(where, fmt::format("{}{} negative values count as 0", subject, negative));
 }
 
+/// One of the ways to spell a path.
+std::string normal(const std::string &path) {
+    return std::filesystem::path(path).lexically_normal().string();
+}
+
 } // namespace
 
 std::shared_ptr<const Image> SceneFiles::image(const std::string &path,
                                                const SourceLocation &where) {
-    std::shared_ptr<const Image> &known = images_[path];
+    std::shared_ptr<const Image> &known = images_[normal(path)];
     if (!known) {
         const auto image = std::make_shared<Image>();
         reads_.add([image, path, where] {
@@ -53,7 +60,7 @@ std::shared_ptr<const Mesh> SceneFiles::mesh(MeshFormat format, const std::strin
                                              const MeshReadOptions &options,
                                              const SourceLocation &where) {
     std::shared_ptr<const Mesh> &known =
-        meshes_[{path, format, options.face_normals, options.flip_tex_coords}];
+        meshes_[{normal(path), format, options.face_normals, options.flip_tex_coords}];
     if (!known) {
         const auto mesh = std::make_shared<Mesh>();
         reads_.add([mesh, format, path, options, where] {
@@ -65,8 +72,14 @@ std::shared_ptr<const Mesh> SceneFiles::mesh(MeshFormat format, const std::strin
     return known;
 }
 
+void SceneFiles::then(std::function<void()> check) {
+    checks_.push_back(std::move(check));
+}
+
 void SceneFiles::read() {
     reads_.run();
+    for (const auto &check : std::exchange(checks_, {}))
+        check();
 }
 
 } // namespace clrender

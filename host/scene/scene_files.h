@@ -5,10 +5,12 @@
 #include "mesh_io.h"
 #include "scene.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace clrender {
 
@@ -21,12 +23,16 @@ public:
     std::shared_ptr<const Mesh> mesh(MeshFormat format, const std::string &path,
                                      const MeshReadOptions &options, const SourceLocation &where);
 
+    /// Notes what has to hold of the files; `check` is run when they have been read.
+    void then(std::function<void()> check);
+
     /// Reads all that has been asked for since. Images have only finite values that are not
     /// negative. Throws InputError, of the file that was asked for first if several are bad.
     void read();
 
 private:
     FileReads reads_;
+    std::vector<std::function<void()>> checks_;
     std::map<std::string, std::shared_ptr<const Image>> images_;
     std::map<std::tuple<std::string, MeshFormat, bool, bool>, std::shared_ptr<const Mesh>> meshes_;
 };

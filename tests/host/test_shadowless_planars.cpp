@@ -37,8 +37,15 @@ std::string ball(double x, double radius) {
                        x, radius);
 }
 
+constexpr double touching = 1e-7;
+
 std::vector<bool> of(const std::string &content) {
-    return shadowless_planars(test::load_text(content));
+    const Scene scene = test::load_text(content);
+    const ShadowlessPlanars planars(scene, touching);
+    std::vector<bool> contained;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        contained.push_back(planars.contains(i));
+    return contained;
 }
 
 /// The six walls of room(), of which those in `casting` cast shadows, and what follows.
@@ -70,7 +77,7 @@ TEST_CASE("the walls of a room and its only light cast no shadows", "[shadowless
 TEST_CASE("a wall that something reaches through casts shadows", "[shadowless]") {
     const std::string light = lamp("sphere", R"(<scale value=".1"/>)");
     CHECK(of(room("") + light + ball(0.5, 0.5)) == walls({}, {false, false}));
-    CHECK(of(room("") + light + ball(0.5, 0.50001)) == walls({5}, {false, false}));
+    CHECK(of(room("") + light + ball(0.5, 0.5000002)) == walls({5}, {false, false}));
     CHECK(of(room("") + light + ball(-0.75, 0.3)) == walls({4}, {false, false}));
     // Only a corner of the cube is outside.
     const std::string cube = R"(<shape type="cube"><transform name="to_world"><scale value=".3"/>
@@ -79,6 +86,30 @@ TEST_CASE("a wall that something reaches through casts shadows", "[shadowless]")
     // Beyond the plane of a wall, although far from its rectangle.
     CHECK(of(room("") + light + lamp("disk", R"(<translate x="50" z="50" y="0"/>)")) ==
           walls({3, 5}, {false, true}));
+}
+
+TEST_CASE("light close behind a wall is behind it, however large or far off the wall is",
+          "[shadowless]") {
+    const std::string far = R"(<translate x="4000000" z="-500000"/>)";
+    for (const double outside : {1e-6, 1e-3, 0.5}) {
+        const auto lamp_at = [&](const std::string &place) {
+            return lamp("sphere",
+                        fmt::format(R"(<scale value=".1"/><translate x="{}"/>)", 0.9 + outside) +
+                            place);
+        };
+        CHECK(of(room("") + lamp_at("")) == walls({5}, {false}));
+        CHECK(of(room(far) + lamp_at(far)) == walls({5}, {false}));
+        const std::string ground = R"(<shape type="{}"><transform name="to_world">
+            <scale value="1000000"/><rotate x="1" angle="-90"/></transform></shape>)";
+        const std::string above = R"(<shape type="sphere"><transform name="to_world">
+            <translate y="1"/></transform></shape>)";
+        for (const char *kind : {"rectangle", "disk"})
+            CHECK(of(fmt::format(fmt::runtime(ground), kind) + above +
+                     lamp("sphere", fmt::format(R"(<scale value=".1"/><translate y="{}"/>)",
+                                                -0.1 - outside))) ==
+                  std::vector<bool>{false, false, false});
+    }
+    CHECK(of(room(far) + lamp("sphere", R"(<scale value=".1"/>)" + far)) == walls({}, {false}));
 }
 
 TEST_CASE("a wall between rooms, and walls with light outside, cast shadows", "[shadowless]") {

@@ -3,6 +3,7 @@
 #include "render_adapter.h"
 
 #include "film/metrics.h"
+#include "flatten/flat_scene.h"
 #include "flatten/generality.h"
 
 #include <catch2/catch.hpp>
@@ -54,11 +55,27 @@ TEST_CASE("a kernel that can do one thing more gives the same picture") {
 }
 
 TEST_CASE("walls that are left out of shadow tests change no bit") {
-    // Lights of several kinds in rooms and above floors, with and without a hierarchy.
-    const std::string name = GENERATE(as<std::string>(), "lights_many", "dielectrics", "meshes_obj",
-                                      "hide_area", "roulette");
-    INFO(name);
-    const Scene scene = load_scene(std::string(CLRENDER_TEST_DIR) + "/references/" + name + ".xml");
+    // Lights of several kinds in rooms and above floors, with and without a hierarchy; and a point
+    // light in the plane of its wall.
+    const auto reference = [](const std::string &name) {
+        return load_scene(std::string(CLRENDER_TEST_DIR) + "/references/" + name + ".xml");
+    };
+    const Scene scenes[] = {reference("lights_many"),
+                            reference("dielectrics"),
+                            reference("meshes_obj"),
+                            reference("hide_area"),
+                            reference("roulette"),
+                            scene_from_xml(R"(
+        <sensor type="perspective"><transform name="to_world">
+            <lookat origin="0 0 4" target="0 0 0" up="0 1 0"/></transform>
+            <film type="hdrfilm"><integer name="width" value="32"/>
+                <integer name="height" value="32"/></film></sensor>
+        <shape type="sphere"><float name="radius" value=".5"/></shape>
+        <shape type="rectangle"><transform name="to_world"><scale value="3"/>
+            <rotate y="1" angle="50"/><translate x="-1.1" z="-.7"/></transform></shape>
+        <emitter type="point"><point name="position" x="-1.1" y="1.2" z="-.7"/></emitter>)")};
+    const Scene &scene = scenes[GENERATE(range(0, 6))];
+    CHECK(flatten(scene, {}).config.SHADOWLESS_PLANAR_COUNT > 0);
     const TestRender without{.spp = 16, .lanes = 8};
     TestRender with = without;
     with.generality = {"SHADOWLESS_PLANAR_COUNT"};
@@ -95,6 +112,11 @@ TEST_CASE("rectangles across an axis are met where others are, with the same coo
         <emitter type="constant"/>
         <emitter type="point"><point name="position" x="0" y=".3" z="1"/></emitter>)" +
                                        shapes);
+    int across = 0;
+    const int axes = flatten(scene, {}).config.PLANAR_AXES;
+    for (int i = 0; i < 7; ++i)
+        across += (axes >> 2 * i & 3) != 0 ? 1 : 0;
+    CHECK(across == 6);
     for (const int lanes : {1, 8})
         check_same("rectangles across axes", scene, {.spp = 16, .lanes = lanes}, {"PLANAR_AXES"});
 }
