@@ -223,7 +223,7 @@ void flatten_spheres(Flattening &work, bool in_bvh) {
 
 /// The axis that the vector, in the renderer's units, lies along, 0 to 2, or none.
 int axis_of(const glm::dvec3 &v) {
-    constexpr double aslant = 1e-9;
+    constexpr double aslant = 2e-7; // matrices in files are rotations by float32
     const glm::dvec3 size = glm::abs(v);
     for (int axis = 0; axis < 3; ++axis)
         if (std::max(size[(axis + 1) % 3], size[(axis + 2) % 3]) <=

@@ -91,7 +91,7 @@ TEST_CASE("rectangles across an axis are met where others are, with the same coo
              R"(<scale x="1.5" y=".5"/><translate x="-.3" y=".2" z="-2"/>)",
              R"(<rotate z="1" angle="90"/><scale x="3" y="2" z="-1"/><translate z="-2.5"/>)",
              R"(<rotate x="1" angle="-90"/><scale x="3" z="2"/><translate y="-1.25" z=".5"/>)",
-             R"(<rotate z="1" angle="270"/><rotate x="1" angle="90"/><translate y="1.5"/>)",
+             R"(<matrix value="0 1 0 0  4.37114e-8 0 -1 1.5  -1 0 -4.37114e-8 0  0 0 0 1"/>)",
              R"(<rotate y="1" angle="90"/><scale z="2"/><translate x="-2"/>)",
              R"(<rotate z="1" angle="180"/><rotate y="1" angle="-90"/><translate x="1.75"/>)",
              R"(<scale x="-.2" y=".4"/><rotate y="1" angle=".001"/><translate x="1" z="-1"/>)",
