@@ -67,6 +67,8 @@ ShadowlessPlanars::ShadowlessPlanars(const Scene &scene, double touching)
     has_map_ =
         std::any_of(scene.emitters.begin(), scene.emitters.end(),
                     [](const Emitter &emitter) { return emitter.kind == EmitterKind::envmap; });
+    if (has_map_)
+        return; // nobody asks for the boxes
     for (const Shape &shape : scene.shapes) {
         if (shape.kind != ShapeKind::mesh || boxes_.count(shape.mesh.get()) != 0)
             continue;
