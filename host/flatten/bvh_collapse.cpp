@@ -67,10 +67,6 @@ public:
         }
         bvh_.nodes.reserve(primitives_.size() / 24 + 1);
         emit_node(root, 0, 1);
-        const float extent = largest_coordinate();
-        for (BvhNode &node : bvh_.nodes) {
-            node.extent = extent;
-        }
         bound_root();
         fill_blocks();
     }
@@ -289,10 +285,15 @@ private:
         return node;
     }
 
+    /// The box, widened by what the tests of rays lose to rounding.
     static void set_box(BvhNode &node, int slot, const Box &box) {
+        float largest = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            node.planes[BVH_PLANE_LOWER + axis][slot] = box.lower[axis];
-            node.planes[BVH_PLANE_UPPER + axis][slot] = box.upper[axis];
+            largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            node.planes[BVH_PLANE_LOWER + axis][slot] = box.lower[axis] - BVH_WIDEN * largest;
+            node.planes[BVH_PLANE_UPPER + axis][slot] = box.upper[axis] + BVH_WIDEN * largest;
         }
     }
 
@@ -363,18 +364,6 @@ private:
             block.radius[lane] = sphere.radius;
             block.prim[lane] = sphere.prim;
         }
-    }
-
-    [[nodiscard]] float largest_coordinate() const {
-        if (binary_.empty()) {
-            return 0.0f;
-        }
-        float largest = 0.0f;
-        for (int axis = 0; axis < 3; ++axis) {
-            largest = std::max({largest, std::abs(binary_[0].box.lower[axis]),
-                                std::abs(binary_[0].box.upper[axis])});
-        }
-        return largest;
     }
 
     const Input &input_;

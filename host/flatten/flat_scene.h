@@ -16,14 +16,13 @@
 namespace clrender {
 
 /// From scene coordinates to the renderer's: p' = (p - center) * scale, scale a power of two, so
-/// that the scene lies within a few units of the origin.
+/// that most of what is small lies within a unit of the origin, see choose_placement().
 struct Placement {
     glm::dvec3 center{0.0};
     double scale = 1;
 
-    [[nodiscard]] glm::vec3 apply(const glm::dvec3 &p) const {
-        return glm::vec3((p - center) * scale);
-    }
+    [[nodiscard]] glm::dvec3 exact(const glm::dvec3 &p) const { return (p - center) * scale; }
+    [[nodiscard]] glm::vec3 apply(const glm::dvec3 &p) const { return glm::vec3(exact(p)); }
 };
 
 /// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.

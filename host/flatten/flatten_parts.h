@@ -24,7 +24,9 @@ struct Flattening {
     [[nodiscard]] bool wants(const char *name) const { return options.generality.count(name) != 0; }
 };
 
-/// Where the scene is put, so that what the camera is near to lies within a unit of the origin.
+/// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
+/// inverse of their sizes, and the unit is their median distance from it. Neither depends on the
+/// camera, nor do they move for something that is far away or huge.
 Placement choose_placement(const Scene &scene);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.

@@ -15,6 +15,9 @@
 #define BVH_NO_PRIM 0xffffffffu
 /* Coordinates beyond this are neither stored nor traversed, so that no product overflows. */
 #define BVH_COORDINATE_LIMIT 1e16f
+/* Boxes are wider than their contents by this share of their largest coordinate; see bvh_ray.clh.
+ */
+#define BVH_WIDEN 2.4e-7f
 /* An empty child's box is turned inside out: from +this to -this. */
 #define BVH_EMPTY_BOUND 1e18f
 
@@ -34,8 +37,7 @@ typedef struct CLR_ALIGNED(64) BvhNode {
     float planes[6][BVH_WIDTH]; /*   0: boxes of the children */
     uint child[BVH_WIDTH];      /* 192: references, see bvh_child_* */
     uint parent;                /* 224: index of the node above; the root names itself */
-    float extent;               /* 228: largest |coordinate| of the whole tree */
-    float bounds[6]; /* 232: of the root only: lower and upper corner of the whole tree */
+    float bounds[6]; /* 228: of the root only: lower and upper corner of the whole tree */
 } BvhNode;
 CLR_STATIC_SIZE(BvhNode, 256);
 

@@ -16,9 +16,9 @@ CLR_SHARED_BEGIN
    corner + x step_x + y step_y, whose component along the axis is 1. */
 typedef struct {
     float origin[3];
-    float near_clip; /* along the axis; 0 where the scene states none */
+    float near_clip; /* along the axis, from where camera rays start */
     float corner[3];
-    float far_clip; /* along the axis; INFINITY where the scene states none */
+    float far_clip; /* likewise; INFINITY where the scene states none */
     float step_x[3];
     float aperture_radius;
     float step_y[3];
@@ -51,9 +51,19 @@ typedef struct {
     uint sphere_blocks;
     float final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
                               looks small */
-    uint pad2[4];
+    float
+        planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
+    float lens_share;    /* of the offset on the lens that is left at the start of a ray */
+    float skipped_depth; /* from the near clip plane to the start, where that is farther away */
+    float first_leg;     /* HAS_FAR_CAMERA: depth of the start less the near clip distance */
+    float start[3];      /* the film's corner, at the depth where camera rays start */
+    float near_of_eye;   /* HAS_FAR_CAMERA: the near clip distance from the eye */
+    float start_x[3];    /* a pixel's width there */
+    float pad0;
+    float start_y[3];
+    float pad1;
 } FrameData;
-CLR_STATIC_SIZE(FrameData, 256);
+CLR_STATIC_SIZE(FrameData, 304);
 
 /* Sums over the samples of a pixel, w being the filter's weight of a sample: of w R, w G, w B,
    w alpha, w and w^2 (the last two of eight are unused), with the compensation of Kahan's

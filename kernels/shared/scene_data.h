@@ -21,7 +21,8 @@ typedef struct {
 } Sphere;
 CLR_STATIC_SIZE(Sphere, 16);
 
-/* What a ray is tested against. */
+/* What a ray is tested against. Of a huge sphere (HUGE_COUNT) the first entry holds a and h, the
+   second one curvature and radius, see sphere.clh. */
 typedef struct {
     float center[3];
     float radius2;
@@ -29,20 +30,23 @@ typedef struct {
 CLR_STATIC_SIZE(SphereTest, 16);
 
 /* A rectangle or a disk: points origin + a du + b dv, with |a|, |b| <= 1 or a^2 + b^2 <= 1.
-   `ra` and `rb` are the dual vectors: a = ra . (p - origin). */
+   `ra` and `rb` are the dual vectors: a = ra . (p - origin), and `half` how far it reaches along
+   the coordinate axes: |du| + |dv|, by components. These three are of the outline that rays are
+   tested against, which is some units in the last place larger than the shape: so no ray passes
+   between two that share an edge. `distance` is normal . origin. */
 typedef struct {
     float origin[3];
     uint is_disk;
     float normal[3];
     float area;
     float du[3];
-    float half_x; /* how far it reaches along the coordinate axes: |du| + |dv|, by components */
+    float half_x;
     float dv[3];
     float half_y;
     float ra[3];
     float half_z;
     float rb[3];
-    float pad;
+    float distance;
 } Planar;
 CLR_STATIC_SIZE(Planar, 96);
 
@@ -55,9 +59,11 @@ typedef struct {
 } ShapeInfo;
 CLR_STATIC_SIZE(ShapeInfo, 8);
 
-/* What a hit on a lane-wise primitive needs, in one place: a sphere's centre and radius or a
-   planar's normal and its distance from the origin, the shape's info, and the first half of the
-   material of its sides, where they do not differ (MATERIALS_IN_RECORDS). */
+/* What a hit on a lane-wise primitive needs, in one place: a sphere's centre and radius (of a huge
+   one a and h, see sphere.clh) or a planar's normal and its distance from the origin, the shape's
+   info, the first half of the material of its sides, where they do not differ
+   (MATERIALS_IN_RECORDS), and a planar's dual vectors: its coordinates of the point p are
+   ra . p + frame[3] and rb . p + frame[7]. */
 typedef struct {
     float place[3]; /* centre or normal */
     float size;     /* radius or distance */
@@ -66,8 +72,9 @@ typedef struct {
     uint is_disk;
     float inv_size; /* of a sphere */
     float material[8];
+    float frame[8]; /* of a planar */
 } PrimitiveRecord;
-CLR_STATIC_SIZE(PrimitiveRecord, 64);
+CLR_STATIC_SIZE(PrimitiveRecord, 96);
 
 #define CLR_BSDF_DIFFUSE 0u
 #define CLR_BSDF_CONDUCTOR 1u
