@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -77,4 +77,4 @@ Placement choose_placement(const Scene &scene) {
     return placement;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION
