@@ -204,13 +204,13 @@ CLR_INLINE void paths_finish(const SceneData *scene, Paths *p, const Work *work,
     }
 #endif
     float r[LANES], g[LANES], b[LANES], alpha[LANES], weight[LANES], dx[LANES], dy[LANES];
-    store_real(radiance.x, r);
-    store_real(radiance.y, g);
-    store_real(radiance.z, b);
-    store_real(p->alpha, alpha);
-    store_real(p->weight, weight);
-    store_real(p->dx, dx);
-    store_real(p->dy, dy);
+    store_float(radiance.x, r);
+    store_float(radiance.y, g);
+    store_float(radiance.z, b);
+    store_float(p->alpha, alpha);
+    store_float(p->weight, weight);
+    store_float(p->dx, dx);
+    store_float(p->dy, dy);
     for_each_lane(i, lanes) {
         FilmSample s = {r[i], g[i], b[i], alpha[i], weight[i], dx[i], dy[i]};
         block_add_sample(scene, block, pixel[i] % TILE, pixel[i] / TILE, s);
@@ -330,7 +330,7 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
     if (!any_lane(late))
         return;
     vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
-    real survival = min(v3_max(size) * p->eta2, real_of(0.95f));
+    real survival = min(v3_max(size) * p->eta2, real_of(CLR_REAL(0.95)));
     real u = sampler_get(p->sampler, BOUNCE_ROULETTE);
     p->throughput = v3_pick(late, v3_scale(p->throughput, 1.0f / survival), p->throughput);
     p->alive &= ~late | lt(u, survival);
@@ -367,7 +367,7 @@ CLR_INLINE mask_l paths_final(const SceneData *scene, const Paths *p, Surface su
 #if FINAL_BY_LIGHTS
     /* Close to the light, where it looks large, the ray that could meet it is worth tracing. */
     __global const FrameData *f = scene->frame;
-    __global const float *light = scene->lights->position;
+    __global const clr_real *light = scene->lights->position;
     vec3 to_light = v3_sub(v3_of(light[0], light[1], light[2]), surface.p);
     return diffuse & ige(p->depth, int_of(f->max_depth - 2)) &
            gt(v3_dot(to_light, to_light), real_of(f->final_distance2));
@@ -555,15 +555,16 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
            __global const SphereTest *sphere_tests, __global const Planar *planars,
            __global const PrimitiveRecord *records, __global const BvhNode *nodes,
            __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
-           __global const uint *triangles, __global const float *normals, __global const float *uvs,
-           __global const uint *shape_of, __global const ShapeInfo *shapes,
-           __global const float *shape_frames, __global const Material *materials,
-           __global const EmitterInfo *emitters, __global const Light *lights,
-           __global const LightTriangle *light_triangles, __global const LightNode *light_nodes,
-           __global const TextureInfo *textures, __global const uint *texels_u8,
-           __global const float *texels_f32, __global const float *decode,
-           __global const float *env_texels, __global const float *env_cdf,
-           __global const uint *env_guide, __global const float *filter, __global FilmPixel *film,
+           __global const uint *triangles, __global const clr_real *normals,
+           __global const clr_real *uvs, __global const uint *shape_of,
+           __global const ShapeInfo *shapes, __global const clr_real *shape_frames,
+           __global const Material *materials, __global const EmitterInfo *emitters,
+           __global const Light *lights, __global const LightTriangle *light_triangles,
+           __global const LightNode *light_nodes, __global const TextureInfo *textures,
+           __global const uint *texels_u8, __global const clr_real *texels_f32,
+           __global const clr_real *decode, __global const clr_real *env_texels,
+           __global const clr_real *env_cdf, __global const uint *env_guide,
+           __global const clr_real *filter, __global FilmPixel *film,
            __global ItemCounters *item_counters PROFILE_BUFFER, uint first_item, uint item_count,
            uint first_block, uint end_block, uint colour, uint stride) {
     if (get_global_id(0) >= item_count)

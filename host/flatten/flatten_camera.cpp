@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -17,10 +17,10 @@ constexpr int max_border = CLR_LEAST_TILE / 2;
 /// Mitsuba's `depth` measures from the near plane, stated or not.
 constexpr double depth_near_clip = 0.01;
 
-void store(float (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<float>(v.x);
-    out[1] = static_cast<float>(v.y);
-    out[2] = static_cast<float>(v.z);
+void store(clr_real (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<clr_real>(v.x);
+    out[1] = static_cast<clr_real>(v.y);
+    out[2] = static_cast<clr_real>(v.z);
 }
 
 /// Half the extent of the image plane at distance 1, along x and y.
@@ -56,7 +56,7 @@ void flatten_film(Flattening &work) {
                                     format == PixelFormat::xyza
                                 ? 1
                                 : 0;
-    f.filter_radius = static_cast<float>(filter_radius(film.filter));
+    f.filter_radius = static_cast<clr_real>(filter_radius(film.filter));
     if (work.options.pixel_centers)
         flat.config.FILTER = 2;
     else if (film.filter.kind != FilterKind::box) {
@@ -193,8 +193,8 @@ void flatten_camera(Flattening &work) {
     flat.config.HAS_CLIP = sensor.near_clip || sensor.far_clip ? 1 : 0;
     if (sensor.kind == SensorKind::thinlens) {
         flat.config.HAS_LENS = sensor.aperture_radius > 0 ? 1 : 0;
-        f.aperture_radius = static_cast<float>(unit * sensor.aperture_radius);
-        f.focus_distance = static_cast<float>(unit * sensor.focus_distance);
+        f.aperture_radius = static_cast<clr_real>(unit * sensor.aperture_radius);
+        f.focus_distance = static_cast<clr_real>(unit * sensor.focus_distance);
     }
 
     const bool narrow = std::min(glm::length(step_x), glm::length(step_y)) < narrow_pixel;
@@ -214,4 +214,4 @@ void flatten_camera(Flattening &work) {
     f.first_leg = static_cast<float>(unit * (std::min(start, far) - near));
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

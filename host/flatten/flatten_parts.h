@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// A flat scene in the making: how the scene's numbers map to the flat one's.
 struct Flattening {
@@ -34,7 +34,7 @@ void flatten_materials(Flattening &work);
 
 /// Index of a texture in the flat scene; CLR_NONE for a constant one and for none, whose colour
 /// (`absent` for none) goes to constant[0..2].
-uint flatten_texture(Flattening &work, int texture, Rgb absent, float *constant);
+uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant);
 
 /// Spheres, planars, meshes and the BVH; shape infos name emitters by Scene's index.
 void flatten_shapes(Flattening &work);
@@ -59,4 +59,4 @@ void flatten_camera(Flattening &work);
 /// Relative luminance of linear sRGB (Rec. 709).
 double luminance(const Rgb &c);
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

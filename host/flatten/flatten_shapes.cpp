@@ -9,16 +9,16 @@
 #include <fmt/core.h>
 #include <limits>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
 /// As many spheres, and as many rectangles and disks, are tested by every ray; more go into the
 /// BVH.
 constexpr std::ptrdiff_t few_primitives = 16;
-/// Less than float32 shows of the renderer's units where the camera looks, within one of the
+/// Less than the precision shows of the renderer's units where the camera looks, within one of the
 /// origin.
-constexpr double unseen = 0x1p-22;
+constexpr double unseen = CLR_EITHER(0x1p-22, 0x1p-51);
 
 /// The outline of planars, for rays, is this share of their reach larger: eight units of rounding.
 constexpr double planar_wider = 0x1p-21;
@@ -27,10 +27,10 @@ constexpr double planar_margin = 0x1p-18;
 
 constexpr float missing = std::numeric_limits<float>::quiet_NaN();
 
-void store(float (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<float>(v.x);
-    out[1] = static_cast<float>(v.y);
-    out[2] = static_cast<float>(v.z);
+void store(clr_real (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<clr_real>(v.x);
+    out[1] = static_cast<clr_real>(v.y);
+    out[2] = static_cast<clr_real>(v.z);
 }
 
 /// True where the normal points the other way than the shape's own.
@@ -55,7 +55,7 @@ uint append_shape(const Shape &shape, Flattening &work) {
             to_local = glm::inverse(glm::dmat3(shape.to_world)) * sphere_radius(shape);
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 3; ++column)
-                flat.shape_frames.push_back(static_cast<float>(to_local[column][row]));
+                flat.shape_frames.push_back(static_cast<clr_real>(to_local[column][row]));
     }
     return static_cast<uint>(flat.shapes.size() - 1);
 }
@@ -71,7 +71,7 @@ Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
     Sphere s{};
     store(s.center, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
     const double radius = sphere_radius(shape) * placement.scale;
-    s.radius = static_cast<float>(is_inverted(shape) ? -radius : radius);
+    s.radius = static_cast<clr_real>(is_inverted(shape) ? -radius : radius);
     return s;
 }
 
@@ -151,7 +151,7 @@ struct VertexData {
 void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flattening &work) {
     FlatScene &flat = work.flat;
     const uint shape_number = append_shape(shape, work);
-    std::vector<glm::vec3> positions(mesh.positions.size());
+    std::vector<Vec3> positions(mesh.positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
         positions[i] =
             flat.placement.apply(glm::dvec3(shape.to_world * glm::dvec4(mesh.positions[i], 1)));
@@ -171,16 +171,16 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
         const glm::dmat3 inverse_transpose =
             glm::transpose(glm::inverse(glm::dmat3(shape.to_world)));
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            glm::vec3 n{missing};
+            Vec3 n{missing};
             if (!mesh.normals.empty())
-                n = glm::vec3(glm::normalize(inverse_transpose * glm::dvec3(mesh.normals[i]))) *
-                    (shape.flip_normals ? -1.0f : 1.0f);
+                n = Vec3(glm::normalize(inverse_transpose * glm::dvec3(mesh.normals[i]))) *
+                    clr_real{shape.flip_normals ? -1.0f : 1.0f};
             flat.normals.insert(flat.normals.end(), {n.x, n.y, n.z});
         }
     }
     if (wanted.uvs)
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(missing) : mesh.uvs[i];
+            const Vec2 uv = mesh.uvs.empty() ? Vec2(missing) : Vec2(mesh.uvs[i]);
             flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
         }
     work.vertex_count += positions.size();
@@ -449,8 +449,8 @@ void make_records(Flattening &work) {
         }
         r.materials = flat.shapes[i].materials;
         r.emitter = flat.shapes[i].emitter;
-        const uint front = r.materials & CLR_NO_MATERIAL;
-        const uint back = r.materials >> 16;
+        const uint front = flat.shapes[i].materials & CLR_NO_MATERIAL;
+        const uint back = flat.shapes[i].materials >> 16;
         one_sided =
             one_sided && (front == back || front == CLR_NO_MATERIAL || back == CLR_NO_MATERIAL);
         const uint material = front != CLR_NO_MATERIAL ? front : back;
@@ -460,15 +460,15 @@ void make_records(Flattening &work) {
     }
     // Few records lie field by field, filled up with empty ones.
     if (flat.records.size() <= CLR_TABLE_SIZE && !work.wants("RECORD_TABLE")) {
-        constexpr std::size_t fields = sizeof(PrimitiveRecord) / sizeof(float);
+        constexpr std::size_t fields = sizeof(PrimitiveRecord) / sizeof(clr_real);
         std::vector<PrimitiveRecord> table(CLR_TABLE_SIZE);
         auto *to = reinterpret_cast<unsigned char *>(table.data());
         for (std::size_t i = 0; i < flat.records.size(); ++i)
             for (std::size_t field = 0; field < fields; ++field)
-                std::memcpy(to + (field * CLR_TABLE_SIZE + i) * sizeof(float),
+                std::memcpy(to + (field * CLR_TABLE_SIZE + i) * sizeof(clr_real),
                             reinterpret_cast<const unsigned char *>(&flat.records[i]) +
-                                field * sizeof(float),
-                            sizeof(float));
+                                field * sizeof(clr_real),
+                            sizeof(clr_real));
         flat.records = std::move(table);
         flat.config.RECORD_TABLE = 1;
     }
@@ -516,4 +516,4 @@ void build_hierarchy(FlatScene &flat) {
             fmt::format("{} triangles or spheres without area are left out", flat.bvh.degenerate));
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -119,4 +119,4 @@ Placement choose_placement(const Scene &scene) {
     return placement;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -31,7 +31,7 @@
 #define BVH_CHILD_SPHERES 2u
 #define BVH_CHILD_EMPTY 3u
 
-CLR_SHARED_BEGIN
+CLR_PRECISION_BEGIN
 
 typedef struct CLR_ALIGNED(64) BvhNode {
     float planes[6][BVH_WIDTH]; /*   0: boxes of the children */
@@ -39,21 +39,21 @@ typedef struct CLR_ALIGNED(64) BvhNode {
     uint parent;                /* 224: index of the node above; the root names itself */
     float bounds[6]; /* 228: of the root only: lower and upper corner of the whole tree */
 } BvhNode;
-CLR_STATIC_SIZE(BvhNode, 256);
+CLR_STATIC_WORDS(BvhNode, 64);
 
 /* Unused lanes repeat lane 0, primitive and all: hitting it twice changes nothing. */
 typedef struct CLR_ALIGNED(64) TriangleBlock {
-    float vertex[3][3][BVH_WIDTH]; /*   0: corner, axis, lane */
-    uint prim[BVH_WIDTH];          /* 288 */
+    clr_real vertex[3][3][BVH_WIDTH]; /*   0: corner, axis, lane */
+    clr_word prim[BVH_WIDTH];         /* 288 */
 } TriangleBlock;
-CLR_STATIC_SIZE(TriangleBlock, 320);
+CLR_STATIC_WORDS(TriangleBlock, 80);
 
 typedef struct CLR_ALIGNED(32) SphereBlock {
-    float center[3][BVH_WIDTH]; /*   0: axis, lane */
-    float radius[BVH_WIDTH];    /*  96 */
-    uint prim[BVH_WIDTH];       /* 128 */
+    clr_real center[3][BVH_WIDTH]; /*   0: axis, lane */
+    clr_real radius[BVH_WIDTH];    /*  96 */
+    clr_word prim[BVH_WIDTH];      /* 128 */
 } SphereBlock;
-CLR_STATIC_SIZE(SphereBlock, 160);
+CLR_STATIC_WORDS(SphereBlock, 40);
 
 /* A reference to a node or a block; `index` has 30 bits. */
 static inline uint bvh_child(uint kind, uint index) {
@@ -66,5 +66,5 @@ static inline uint bvh_child_index(uint child) {
     return child & 0x3fffffffu;
 }
 
-CLR_SHARED_END
+CLR_PRECISION_END
 #endif

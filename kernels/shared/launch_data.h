@@ -4,7 +4,7 @@
 
 #include "shared/shared_types.h"
 
-CLR_SHARED_BEGIN
+CLR_PRECISION_BEGIN
 
 /* Samples are summed in blocks of this many, each from zero and in an order that depends on nothing
    but the scene and the width of the kernel. A launch traces whole blocks, so the picture does not
@@ -30,26 +30,26 @@ typedef struct {
     float lens_y[3];
     float shadow_free_distance; /* from the only light, the first SHADOW_FREE_COUNT spheres
                                    cannot come between it and a point that is nearer */
-    float env_radiance[3];      /* of a constant environment */
-    float env_probability;      /* that light sampling chooses the environment */
-    float env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
-    uint env_width;             /* pixels of the map */
+    clr_real env_radiance[3];      /* of a constant environment */
+    clr_real env_probability;      /* that light sampling chooses the environment */
+    clr_real env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
+    uint env_width;                /* pixels of the map */
     uint env_height;
-    float env_density; /* of light sampling, per solid angle: this times the weight of the place,
+    clr_real env_density; /* of light sampling, per solid angle: this times the weight of the place,
                           times the sines of the row's middle over that of the place */
-    int max_depth;     /* edges of the longest path; INT_MAX: unbounded */
-    int rr_depth;      /* roulette from this depth on; INT_MAX: never */
-    uint width;        /* of the picture (the crop window), pixels */
+    int max_depth;        /* edges of the longest path; INT_MAX: unbounded */
+    int rr_depth;         /* roulette from this depth on; INT_MAX: never */
+    uint width;           /* of the picture (the crop window), pixels */
     uint height;
     int crop_x; /* of the crop window within the whole film */
     int crop_y;
     uint seed;
-    uint prim_bvh_sphere; /* first primitive that is a sphere in the BVH */
-    uint total_samples;   /* a pixel, over all launches */
-    float filter_radius;  /* pixels */
-    uint triangle_blocks; /* in the BVH's leaves */
+    uint prim_bvh_sphere;   /* first primitive that is a sphere in the BVH */
+    uint total_samples;     /* a pixel, over all launches */
+    clr_real filter_radius; /* pixels */
+    uint triangle_blocks;   /* in the BVH's leaves */
     uint sphere_blocks;
-    float final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
+    clr_real final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
                               looks small */
     float
         planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
