@@ -55,7 +55,7 @@ typedef struct {
     real weight; /* the camera ray's */
     real dx, dy;
 #if HAS_FAR_CAMERA
-    mask_l on_first_leg; /* camera rays that have not yet reached `start` */
+    real ahead; /* CameraRay::ahead of a camera ray that is under way to `start`, else 0 */
     vec3 start;
     real start_t_max;
 #endif
@@ -131,11 +131,11 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     ray.t_far -= ray.t_near;
 #endif
 #if HAS_FAR_CAMERA
-    p->on_first_leg |= fresh;
+    p->ahead = pick(fresh, ray.ahead, p->ahead);
     p->start = v3_pick(fresh, ray.o, p->start);
     p->start_t_max = pick(fresh, ray.t_far, p->start_t_max);
-    ray.o = ray.leg_o;
-    ray.t_far = ray.leg_far;
+    ray.o = v3_mad(ray.d, -ray.ahead, ray.o);
+    ray.t_far = ray.ahead - camera_next_leg(ray.ahead);
 #endif
     p->alive |= fresh;
     p->first |= fresh;
@@ -452,10 +452,12 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
 #endif
     mask_l restarted = no_lanes();
 #if HAS_FAR_CAMERA
-    restarted = p->alive & ~met & p->on_first_leg;
-    p->on_first_leg &= ~p->alive;
-    p->o = v3_pick(restarted, p->start, p->o);
-    p->t_max = pick(restarted, p->start_t_max, p->t_max);
+    restarted = p->alive & ~met & gt(p->ahead, real_of(0.0f));
+    p->ahead = pick(restarted, camera_next_leg(p->ahead), pick(p->alive, real_of(0.0f), p->ahead));
+    p->o = v3_pick(restarted, v3_mad(p->d, -p->ahead, p->start), p->o);
+    real leg =
+        pick(gt(p->ahead, real_of(0.0f)), p->ahead - camera_next_leg(p->ahead), p->start_t_max);
+    p->t_max = pick(restarted, leg, p->t_max);
 #endif
 
 #if INTEGRATOR == 1
@@ -508,9 +510,8 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);
 #if HAS_FAR_CAMERA
-    p.on_first_leg = no_lanes();
+    p.ahead = p.start_t_max = p.t_max;
     p.start = p.o;
-    p.start_t_max = p.t_max;
 #endif
 #if INTEGRATOR == 1
     p.skipped = p.t_max;

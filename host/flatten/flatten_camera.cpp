@@ -124,9 +124,9 @@ DepthRange depth_range(const Shape &shape, const glm::dvec3 &eye, const glm::dve
 }
 
 /// The depth at which camera rays start, in scene units: that of the nearest shape, so that neither
-/// the eye's place nor the direction loses pixels to rounding, however far away the eye is. Where
-/// a shape reaches to the eye, and only a `narrow` angle is seen, rays go in two legs
-/// (HAS_FAR_CAMERA), and the second one starts before the middle of the scene.
+/// the eye's place nor the direction loses pixels to rounding, however far away the eye is. Where a
+/// `narrow` angle is seen, and some shape begins long before the middle of the scene, rays come in
+/// legs (HAS_FAR_CAMERA) to a start before that middle.
 double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
     const Scene &scene = work.scene;
     const glm::dvec3 eye(scene.sensor.to_world[3]);
@@ -137,14 +137,13 @@ double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
         if (range.farthest > 0)
             nearest = std::min(nearest, range.nearest);
     }
-    constexpr double margin = 0x1p-4;
-    if (nearest > margin * unit)
-        return std::isfinite(nearest) ? nearest - margin * unit : 0;
-    constexpr double reach = 4, far_away = 16;
+    constexpr double margin = 0x1p-4, reach = 4, far_away = 16;
+    const double before_all = std::isfinite(nearest) ? std::max(nearest - margin * unit, 0.0) : 0;
     const double middle = glm::dot(work.flat.placement.center - eye, axis);
-    if (!narrow || middle < far_away * unit || scene.integrator.kind == IntegratorKind::depth ||
+    if (!narrow || middle - before_all < far_away * unit ||
+        scene.integrator.kind == IntegratorKind::depth ||
         scene.sensor.near_clip.value_or(0) > middle - reach * unit)
-        return 0;
+        return before_all;
     work.flat.config.HAS_FAR_CAMERA = 1;
     return middle - reach * unit;
 }
@@ -172,7 +171,6 @@ void flatten_camera(Flattening &work) {
     const glm::dvec3 right = -glm::normalize(glm::dvec3(sensor.to_world[0]));
     const glm::dvec3 up = glm::normalize(glm::dvec3(sensor.to_world[1]));
     const glm::dvec3 axis = glm::normalize(glm::dvec3(sensor.to_world[2]));
-    store(f.origin, glm::dvec3(flat.placement.apply(glm::dvec3(sensor.to_world[3]))));
     store(f.axis, axis);
     store(f.lens_x, right);
     store(f.lens_y, up);
@@ -210,7 +208,6 @@ void flatten_camera(Flattening &work) {
     f.near_clip = static_cast<clr_real>(unit * std::max(near - start, 0.0));
     f.far_clip = static_cast<clr_real>(unit * (far - start));
     f.skipped_depth = static_cast<clr_real>(unit * std::max(start - near, 0.0));
-    f.near_of_eye = static_cast<clr_real>(unit * near);
     f.first_leg = static_cast<clr_real>(unit * (std::min(start, far) - near));
 }
 

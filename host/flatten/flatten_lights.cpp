@@ -102,9 +102,7 @@ void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent 
 void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, double radiance,
               LightList &list) {
     FlatScene &flat = work.flat;
-    const Shape &shape = work.scene.shapes[static_cast<std::size_t>(emitter.shape)];
-    const std::size_t first = work.first_triangle_of_shape.at(emitter.shape);
-    const std::size_t count = shape.kind == ShapeKind::mesh ? shape.mesh->triangles.size() : 2;
+    const auto [first, count] = work.triangles_of_shape.at(emitter.shape);
     const bool by_vertex = !flat.triangles.empty();
     for (std::size_t t = first; t < first + count; ++t) {
         const TriangleCorners &corner = flat.corners[t];
@@ -163,7 +161,7 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         info.density = 1;
         info.light = list.size() -
                      static_cast<uint>(flat.config.SPHERE_COUNT + flat.config.PLANAR_COUNT) -
-                     static_cast<uint>(work.first_triangle_of_shape.at(emitter.shape));
+                     static_cast<uint>(work.triangles_of_shape.at(emitter.shape).first);
         add_mesh(work, emitter, light, radiance, list);
         return;
     }

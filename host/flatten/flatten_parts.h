@@ -7,16 +7,21 @@
 
 namespace clrender::inline CLR_PRECISION {
 
+/// Some of FlatScene::corners, one after the other.
+struct TriangleRange {
+    std::size_t first = 0, count = 0;
+};
+
 /// A flat scene in the making: how the scene's numbers map to the flat one's.
 struct Flattening {
     const Scene &scene;
     const FlattenOptions &options;
     FlatScene flat{};
-    std::map<int, uint> texture_index{};      ///< by Scene::textures
-    std::map<int, uint> material_index{};     ///< by Scene::bsdfs, not twosided
-    std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
-    std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
-    std::map<int, std::size_t> first_triangle_of_shape{}; ///< by Scene::shapes, meshes
+    std::map<int, uint> texture_index{};               ///< by Scene::textures
+    std::map<int, uint> material_index{};              ///< by Scene::bsdfs, not twosided
+    std::map<int, uint> sides_of_bsdf{};               ///< by Scene::bsdfs, as ShapeInfo::materials
+    std::map<int, uint> primitive_of_shape{};          ///< by Scene::shapes, spheres and planars
+    std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
     bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
 

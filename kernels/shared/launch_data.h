@@ -15,8 +15,8 @@ CLR_PRECISION_BEGIN
    A pixel position (x, y), in pixels from the corner of the whole film, looks along
    corner + x step_x + y step_y, whose component along the axis is 1. */
 typedef struct {
-    clr_real origin[3];
-    clr_real near_clip; /* along the axis, from where camera rays start */
+    clr_real start[3];  /* the film's corner at the depth where camera rays start */
+    clr_real near_clip; /* along the axis, from the start */
     clr_real corner[3];
     clr_real far_clip; /* likewise; INFINITY where the scene states none */
     clr_real step_x[3];
@@ -55,15 +55,13 @@ typedef struct {
         planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
     clr_real lens_share;    /* of the offset on the lens that is left at the start of a ray */
     clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
-    clr_real first_leg;     /* HAS_FAR_CAMERA: depth of the start less the near clip distance */
-    clr_real start[3];      /* the film's corner, at the depth where camera rays start */
-    clr_real near_of_eye;   /* HAS_FAR_CAMERA: the near clip distance from the eye */
+    clr_real first_leg;     /* HAS_FAR_CAMERA: depth of the start, from the near clip plane */
     clr_real start_x[3];    /* a pixel's width there */
     clr_real pad0;
     clr_real start_y[3];
     clr_real pad1;
 } FrameData;
-CLR_STATIC_SIZE(FrameData, CLR_EITHER(304, 560));
+CLR_STATIC_SIZE(FrameData, CLR_EITHER(288, 528));
 
 CLR_PRECISION_END
 
