@@ -14,6 +14,7 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.spp = how.spp > 0 ? how.spp : scene.sample_count;
     options.seed = how.seed;
     options.lanes = how.lanes;
+    options.double_precision = how.double_precision;
     options.pixel_centers = how.pixel_centers;
     options.independent_sampler = !how.sobol;
     options.light_samples = how.light_samples;

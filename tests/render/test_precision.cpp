@@ -1,0 +1,148 @@
+/// Pictures in double precision: against closed forms, against themselves at another scale, and as
+/// what single precision is measured by.
+
+#include "render_adapter.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+using namespace clrender;
+using namespace clrender::test;
+
+namespace {
+
+constexpr int size = 16;
+
+std::string camera(const std::string &origin, const std::string &target, const std::string &up) {
+    return fmt::format(R"(<sensor type="perspective"><float name="fov" value="40"/>
+        <transform name="to_world"><lookat origin="{}" target="{}" up="{}"/></transform>
+        <film type="hdrfilm"><integer name="width" value="{}"/><integer name="height" value="{}"/>
+        <rfilter type="box"/></film></sensor>)",
+                       origin, target, up, size, size);
+}
+
+/// How far the pictures are apart, pixel by pixel: the largest difference of a channel, relative to
+/// the pixel's brightest one. Infinite where one of them is not finite.
+std::vector<double> relative_differences(const Image &a, const Image &b) {
+    std::vector<double> differences;
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x) {
+            double largest = 0, brightest = 0;
+            bool finite = true;
+            for (int c = 0; c < 3; ++c) {
+                const double va = value_at(a, x, y, c), vb = value_at(b, x, y, c);
+                finite = finite && std::isfinite(va) && std::isfinite(vb);
+                largest = std::max(largest, std::abs(va - vb));
+                brightest = std::max({brightest, std::abs(va), std::abs(vb)});
+            }
+            differences.push_back(!finite ? INFINITY : brightest > 0 ? largest / brightest : 0);
+        }
+    std::sort(differences.begin(), differences.end());
+    return differences;
+}
+
+/// The share of the pixels that are apart by more than `tolerance`.
+double share_above(const std::vector<double> &sorted, double tolerance) {
+    const auto first = std::upper_bound(sorted.begin(), sorted.end(), tolerance);
+    return static_cast<double>(sorted.end() - first) / static_cast<double>(sorted.size());
+}
+
+/// A cluster of mirror balls in a sky: each reflection magnifies what rounding has changed of a
+/// direction by about the distance over the radius. Scaled by `s`.
+Scene mirror_balls(double s) {
+    std::string xml = R"(<integrator type="path"><integer name="max_depth" value="14"/>
+        <integer name="rr_depth" value="1000"/></integrator>)";
+    xml +=
+        camera("0 0 0", fmt::format("{:.17g} {:.17g} {:.17g}", 0.3 * s, 0.4 * s, 1.0 * s), "0 1 0");
+    for (int i = 0; i < 14; ++i) {
+        // Balls around the camera that nearly touch.
+        const double turn = 2.39996 * i, height = 1 - (2 * i + 1) / 14.0;
+        const double around = std::sqrt(1 - height * height);
+        xml += fmt::format(R"(<shape type="sphere"><point name="center" x="{:.17g}" y="{:.17g}"
+            z="{:.17g}"/><float name="radius" value="{:.17g}"/><bsdf type="conductor">
+            <string name="material" value="none"/></bsdf></shape>)",
+                           s * around * std::cos(turn), s * height, s * around * std::sin(turn),
+                           0.45 * s);
+    }
+    xml += R"(<emitter type="envmap"><string name="filename" value="data/sky.exr"/></emitter>)";
+    return scene_from_xml(xml);
+}
+
+} // namespace
+
+TEST_CASE("a point light on a floor is right to the last bit of a float in double precision") {
+    // Radiance albedo / pi * I cos / d^2; the floor and all else moved far from the origin.
+    constexpr double x0 = 100000, height = 1.25, intensity = 7, albedo = 0.6;
+    const Scene scene = scene_from_xml(
+        R"(<integrator type="path"><integer name="max_depth" value="2"/></integrator>)" +
+        camera("100000 5 0", "100000 0 0", "0 0 1") +
+        R"(<shape type="rectangle"><transform name="to_world"><scale value="20"/>
+        <rotate x="1" angle="-90"/><translate x="100000"/></transform>
+        <bsdf type="diffuse"><rgb name="reflectance" value=".6"/></bsdf></shape>
+        <emitter type="point"><point name="position" x="100000.3" y="1.25" z="-.4"/>
+        <rgb name="intensity" value="7"/></emitter>)");
+    const auto largest_error = [&](bool double_precision) {
+        const Image image =
+            render_measured(
+                scene,
+                {.spp = 1, .lanes = 1, .double_precision = double_precision, .pixel_centers = true})
+                .mean;
+        double largest = 0;
+        for (int y = 0; y < size; ++y)
+            for (int x = 0; x < size; ++x) {
+                const auto slope = [](int pixel) {
+                    return (2 * (pixel + 0.5) / size - 1) * std::tan(std::numbers::pi / 9);
+                };
+                const glm::dvec3 way = glm::dvec3(100000.3 - x0, height, -0.4) -
+                                       glm::dvec3(-5 * slope(x), 0, -5 * slope(y));
+                const double d2 = glm::dot(way, way);
+                const double exact =
+                    albedo / std::numbers::pi * intensity * height / (d2 * std::sqrt(d2));
+                const double error = std::abs(value_at(image, x, y) / exact - 1);
+                largest = std::isfinite(error) ? std::max(largest, error) : INFINITY;
+            }
+        return largest;
+    };
+    constexpr double half_ulp = 0x1p-24;
+    CHECK(largest_error(true) < 1.001 * half_ulp);
+    CHECK(largest_error(false) > 1.5 * half_ulp); // or the bar above would tell nothing
+}
+
+TEST_CASE("mirror balls magnify no rounding of single precision in double precision") {
+    // Three times as large is the same picture, where nothing is rounded: the scale of the
+    // placement is a power of two, so all numbers are others.
+    const auto apart = [&](bool double_precision) {
+        const TestRender how = {
+            .spp = 1, .lanes = 1, .double_precision = double_precision, .pixel_centers = true};
+        return relative_differences(render_measured(mirror_balls(1), how).mean,
+                                    render_measured(mirror_balls(3), how).mean);
+    };
+    const std::vector<double> exact = apart(true), rounded = apart(false);
+    INFO(exact.back() << " " << share_above(rounded, 1e-4));
+    CHECK(exact.back() < 1e-6);
+    CHECK(share_above(rounded, 1e-4) > 0.05);
+}
+
+TEST_CASE("single and double precision trace the same paths until rounding parts them") {
+    // Of the pixels with four samples half agree to rounding, and few are parted; a mistake in
+    // either precision shows in all pixels that it touches.
+    const auto name =
+        GENERATE(as<std::string>(), "lights_shapes", "texture_shapes", "envmap_sun", "dielectrics");
+    INFO(name);
+    Scene scene = load_scene(std::string(CLRENDER_TEST_DIR) + "/references/" + name + ".xml");
+    const auto picture = [&](bool double_precision) {
+        return render_measured(scene, {.spp = 4, .lanes = 1, .double_precision = double_precision})
+            .mean;
+    };
+    const std::vector<double> apart = relative_differences(picture(false), picture(true));
+    const double median = apart[apart.size() / 2];
+    INFO(median << " " << share_above(apart, 1e-3));
+    CHECK(apart.back() > 0); // the two are not the same program
+    CHECK(median < 1e-6);
+    CHECK(share_above(apart, 1e-3) < 0.02);
+}
