@@ -30,10 +30,6 @@ double in_single(clr_real value) {
     return double{static_cast<float>(value)};
 }
 
-glm::dvec3 in_single(const glm::dvec3 &v) {
-    return glm::dvec3(glm::vec3(v));
-}
-
 glm::dvec3 in_single(const clr_real (&v)[3]) {
     return {in_single(v[0]), in_single(v[1]), in_single(v[2])};
 }
@@ -81,12 +77,13 @@ void add_point(const Flattening &work, std::size_t index, LightList &list) {
     Light light{};
     light.kind = CLR_LIGHT_POINT;
     light.texture = CLR_NONE;
-    const glm::dvec3 place = work.flat.placement.apply(emitter.position);
+    const Placement &placement = work.flat.placement;
+    const glm::dvec3 place = (emitter.position - placement.center) * placement.scale;
     store(light.position, place);
     store(light.radiance, emitter.intensity * unit * unit);
     const double intensity = luminance(emitter.intensity) * unit * unit;
     if (intensity > 0)
-        list.add(light, {in_single(place), in_single(place), {0, 0, 1}, -1, intensity});
+        list.add(light, {place, place, {0, 0, 1}, -1, intensity});
 }
 
 /// The cone of the normals by which a triangle shines: its own, or those of its vertices.
