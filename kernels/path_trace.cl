@@ -178,7 +178,7 @@ CLR_INLINE void paths_finish(const SceneData *scene, Paths *p, const Work *work,
     while (!lanes[first])
         ++first;
     if (!any_lane(finished & ~ieq(p->pixel, int_of(pixel[first])))) {
-        block_add_lanes(block, pixel[first] % TILE, pixel[first] / TILE,
+        block_add_lanes(scene, block, pixel[first] % TILE, pixel[first] / TILE, finished, first,
                         v3_pick(finished, radiance, black), pick(finished, p->alpha, real_of(0.0f)),
                         pick(finished, p->weight, real_of(0.0f)));
         p->pending &= p->alive;
@@ -553,13 +553,13 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
     uint rays = 0;
     BlockSums block;
     for (uint b = first_block; b < end_block; ++b) {
-        work.first_sample = b * CLR_BLOCK_SAMPLES;
-        work.end_sample = min(work.first_sample + CLR_BLOCK_SAMPLES, frame->total_samples);
+        work.first_sample = CLR_BLOCK_START(b);
+        work.end_sample = min(CLR_BLOCK_START(b + 1u), frame->total_samples);
         work.next_sample = work.first_sample;
         work.next_x = work.next_y = 0;
         block_clear(&block);
         render_block(&scene, work, &block, &rays, &counters);
-        film_add(film, work.x, work.y, (int)frame->width, (int)frame->height, &block);
+        film_add(&scene, film, work.x, work.y, work.end_sample - work.first_sample, &block);
     }
     const uint low = counters.rays_low + rays;
     counters.rays_high += low < rays ? 1u : 0u;

@@ -44,6 +44,7 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
         {"memory", {{"host_bytes", stats.host_bytes}, {"device_bytes", stats.device_bytes}}},
         {"triangles", stats.triangles},
         {"nonfinite_samples", stats.nonfinite_samples},
+        {"clamped_pixels", stats.clamped_pixels},
     };
     std::ofstream file(path);
     file << json.dump(2) << '\n';

@@ -2,6 +2,7 @@
 
 #include "device_peak.h"
 #include "film/film.h"
+#include "film/film_blocks.h"
 #include "log.h"
 #include "profile.h"
 
@@ -148,8 +149,8 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
         recorder_->finished(pending.launch, pending.event, pending.start);
 
     // An estimate for the progress bar: tiles at the border are smaller.
-    const int first = pending.launch.first_block * CLR_BLOCK_SAMPLES;
-    const int end = std::min(pending.launch.end_block * CLR_BLOCK_SAMPLES, spp);
+    const int first = CLR_BLOCK_START(pending.launch.first_block);
+    const int end = std::min(CLR_BLOCK_START(pending.launch.end_block), spp);
     const double share =
         static_cast<double>(pending.launch.item_count) / static_cast<double>(extent_.tiles());
     paths_done_ += share * static_cast<double>(extent_.pixels) * (end - first);
@@ -158,10 +159,9 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
 }
 
 bool PathTracer::render(int spp) {
-    const int blocks = (spp + CLR_BLOCK_SAMPLES - 1) / CLR_BLOCK_SAMPLES;
     const std::size_t least_items =
         round_up(static_cast<std::size_t>(entry_.compute_units) * 4, group_);
-    LaunchPlan plan(extent_.tiles_x, extent_.tiles_y, blocks, flat_.config.FILTER == 3,
+    LaunchPlan plan(extent_.tiles_x, extent_.tiles_y, blocks_of(spp), flat_.config.FILTER == 3,
                     static_cast<std::size_t>(options_.tile), options_.batch, least_items);
     std::deque<Pending> pending;
     bool stopped = false;
@@ -184,18 +184,31 @@ bool PathTracer::render(int spp) {
 }
 
 void PathTracer::read(RenderResult &result, PixelFormat format) {
-    std::vector<FilmPixel> film(extent_.pixels);
+    Film film;
+    film.width = static_cast<int>(flat_.frame.width);
+    film.height = static_cast<int>(flat_.frame.height);
+    film.exponent = flat_.frame.film_exponent;
+    if (flat_.config.BORDER > 0)
+        film.spread =
+            filter_spread(flat_.filter, double{flat_.frame.filter_radius}, flat_.config.BORDER);
+    film.pixels.resize(extent_.pixels);
     std::vector<ItemCounters> counters(extent_.tiles());
     with_device("reading the film", [&] {
-        queue_.enqueueReadBuffer(film_, CL_TRUE, 0, extent_.film_bytes(), film.data());
+        queue_.enqueueReadBuffer(film_, CL_TRUE, 0, extent_.film_bytes(), film.pixels.data());
         queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, extent_.counter_bytes(), counters.data());
     });
-    const auto width = static_cast<int>(flat_.frame.width);
-    const auto height = static_cast<int>(flat_.frame.height);
-    result.image = film_mean(film, width, height, format);
-    result.variance = film_variance(film, width, height, format);
+    result.image = film_mean(film, format);
+    result.variance = film_variance(film, format);
 
     RenderStats &stats = result.stats;
+    for (std::size_t i = 0; i < film.pixels.size(); ++i) {
+        if (film.pixels[i].clamped == 0)
+            continue;
+        if (stats.clamped_pixels++ == 0) {
+            stats.clamped_x = static_cast<int>(i % flat_.frame.width);
+            stats.clamped_y = static_cast<int>(i / flat_.frame.width);
+        }
+    }
     stats.paths = std::round(paths_done_);
     for (const ItemCounters &c : counters) {
         stats.rays += c.rays_low + 4294967296.0 * c.rays_high;

@@ -100,6 +100,10 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
         log::warn(fmt::format("{} samples were not finite and count as black; the first in pixel "
                               "({}, {})",
                               stats.nonfinite_samples, stats.nonfinite_x, stats.nonfinite_y));
+    if (stats.clamped_pixels > 0)
+        log::warn(fmt::format("{} pixels had sums beyond the film's range, which were clamped; the "
+                              "first is ({}, {})",
+                              stats.clamped_pixels, stats.clamped_x, stats.clamped_y));
     return result;
 }
 

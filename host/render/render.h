@@ -49,6 +49,8 @@ struct RenderStats {
     std::size_t triangles = 0;
     double nonfinite_samples = 0;
     int nonfinite_x = 0, nonfinite_y = 0; ///< the first pixel that had one
+    std::size_t clamped_pixels = 0;       ///< with sums beyond the film's range (FilmPixel)
+    int clamped_x = 0, clamped_y = 0;     ///< the first of them
 };
 
 /// `image` has the channels of the film's pixel format; `variance` has as many and holds the
