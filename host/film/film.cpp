@@ -53,8 +53,9 @@ Channels mean(const PixelSums &sums) {
 std::vector<Channels> scatter(const Film &film) {
     std::vector<Channels> all;
     all.reserve(film.pixels.size());
+    const FilmUnits units(film.exponent);
     for (const FilmPixel &pixel : film.pixels) {
-        const PixelSums sums(pixel, film.exponent);
+        const PixelSums sums(pixel, units);
         Channels &scatter = all.emplace_back();
         for (int c = 0; c < 4; ++c)
             scatter[static_cast<std::size_t>(c)] =
@@ -131,8 +132,9 @@ std::vector<double> filter_spread(std::span<const float> table, double radius, i
 Image film_mean(const Film &film, PixelFormat format) {
     std::vector<Channels> means;
     means.reserve(film.pixels.size());
+    const FilmUnits units(film.exponent);
     for (const FilmPixel &pixel : film.pixels)
-        means.push_back(mean(PixelSums(pixel, film.exponent)));
+        means.push_back(mean(PixelSums(pixel, units)));
     return make_image(
         film.width, film.height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
@@ -147,8 +149,9 @@ Image film_variance(const Film &film, PixelFormat format) {
     std::vector<Channels> values = scatter(film);
     values = spread_along(values, film.spread, width, 1, height, width);
     values = spread_along(values, film.spread, height, width, width, 1);
+    const FilmUnits units(film.exponent);
     const auto deviation = [&](std::size_t i, std::size_t c) {
-        const double weight = PixelSums(film.pixels[i], film.exponent).weight();
+        const double weight = PixelSums(film.pixels[i], units).weight();
         return weight != 0 ? std::sqrt(values[i][c]) / std::abs(weight)
                            : std::numeric_limits<double>::infinity();
     };
