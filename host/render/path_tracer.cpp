@@ -3,6 +3,7 @@
 #include "device_peak.h"
 #include "film/film.h"
 #include "film/film_blocks.h"
+#include "flatten/film_filter.h"
 #include "log.h"
 #include "profile.h"
 
@@ -12,7 +13,7 @@
 #include <fmt/core.h>
 #include <numeric>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -230,4 +231,4 @@ void PathTracer::complete_profile(const RenderStats &stats) {
     profile.peak = measure_peak(entry_, context_, queue_);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -12,7 +12,7 @@
 #include <future>
 #include <memory>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// The side of a work-item's square. Splatted filters need one that reaches no further than the
 /// next.
@@ -75,4 +75,4 @@ private:
     std::chrono::steady_clock::time_point last_finish_{};
 };
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION
