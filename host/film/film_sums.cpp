@@ -45,7 +45,16 @@ FilmUnits::FilmUnits(int film_exponent)
     : colour(std::ldexp(1.0, CLR_COLOUR_LSB + film_exponent)),
       alpha(std::ldexp(1.0, CLR_COLOUR_LSB)),
       colour_scatter(std::ldexp(1.0, CLR_SCATTER_LSB + 2 * film_exponent)),
-      alpha_scatter(std::ldexp(1.0, CLR_SCATTER_LSB)) {}
+      alpha_scatter(std::ldexp(1.0, CLR_SCATTER_LSB)),
+      colour_difference(std::ldexp(1.0, CLR_DIFFERENCE_LSB + film_exponent)) {}
+
+double FilmUnits::difference(const ControlPixel &pixel, int channel) const {
+    return value_of<CLR_DIFFERENCE_WORDS>(pixel.difference, channel, colour_difference);
+}
+
+double FilmUnits::scatter(const ControlPixel &pixel, int channel) const {
+    return value_of<CLR_SCATTER_WORDS>(pixel.scatter, channel, colour_scatter);
+}
 
 double PixelSums::colour(int channel) const {
     return value_of<CLR_COLOUR_WORDS>(pixel_.colour, channel,

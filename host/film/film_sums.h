@@ -1,15 +1,20 @@
 #pragma once
 /// The device's exact sums as numbers, and their addition.
 
+#include "shared/control_tile.h"
 #include "shared/launch_data.h"
 
 namespace clrender {
 
 /// What the lowest bits of a film's sums are worth, given FrameData::film_exponent.
 struct FilmUnits {
-    double colour, alpha, colour_scatter, alpha_scatter;
+    double colour, alpha, colour_scatter, alpha_scatter, colour_difference;
 
     explicit FilmUnits(int film_exponent);
+
+    /// Of R, G or B of a control tile's pixel.
+    [[nodiscard]] double difference(const ControlPixel &pixel, int channel) const;
+    [[nodiscard]] double scatter(const ControlPixel &pixel, int channel) const;
 };
 
 /// The sums of one pixel. Channels: R, G, B, alpha.

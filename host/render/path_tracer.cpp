@@ -69,6 +69,8 @@ PathTracer::PathTracer(const DeviceEntry &entry, const FlatScene &flat,
                        const RenderOptions &options)
     : entry_(entry), flat_(flat), options_(options),
       extent_(flat.frame, static_cast<std::size_t>(flat.config.TILE)),
+      control_layout_{flat.frame.width, flat.frame.height,
+                      static_cast<std::size_t>(flat.config.TILE), flat.frame.control_group},
       group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group) {
     with_device("opening the device", [&] {
         context_ = cl::Context(entry.device);
@@ -106,11 +108,15 @@ void PathTracer::upload(RenderStats &stats) {
     with_device("clearing the film", [&] {
         film_ = cl::Buffer(context_, CL_MEM_READ_WRITE, extent_.film_bytes());
         counters_ = cl::Buffer(context_, CL_MEM_READ_WRITE, extent_.counter_bytes());
+        const std::size_t control_bytes = std::max(control_layout_.bytes(), sizeof(ControlPixel));
+        control_ = cl::Buffer(context_, CL_MEM_READ_WRITE, control_bytes);
+        queue_.enqueueFillBuffer(control_, cl_uint{0}, 0, control_bytes);
         queue_.enqueueFillBuffer(film_, cl_uint{0}, 0, extent_.film_bytes());
         queue_.enqueueFillBuffer(counters_, cl_uint{0}, 0, extent_.counter_bytes());
         launch_arguments_ = scene_->bind(kernel_);
         kernel_.setArg(launch_arguments_++, film_);
         kernel_.setArg(launch_arguments_++, counters_);
+        kernel_.setArg(launch_arguments_++, control_);
         if (options_.profile != nullptr) {
             recorder_ = std::make_unique<ProfileRecorder>(*options_.profile, context_, queue_);
             kernel_.setArg(launch_arguments_++, recorder_->buffer());
@@ -199,7 +205,20 @@ void PathTracer::read(RenderResult &result, PixelFormat format) {
         queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, extent_.counter_bytes(), counters.data());
     });
     result.image = film_mean(film, format);
-    result.variance = film_variance(film, format);
+    if (options_.with_variance) {
+        result.variance = film_variance(film, format);
+        std::vector<ControlPixel> control(control_layout_.bytes() / sizeof(ControlPixel));
+        if (!control.empty())
+            with_device("reading the control tiles", [&] {
+                queue_.enqueueReadBuffer(control_, CL_TRUE, 0, control_layout_.bytes(),
+                                         control.data());
+            });
+        result.error.factor =
+            variance_factor(control_layout_, control, result.image, film.exponent);
+        for (float &value : result.variance.f32)
+            value *= static_cast<float>(result.error.factor.value);
+        result.error.relative_variance = mean_relative_variance(result.image, result.variance);
+    }
 
     RenderStats &stats = result.stats;
     for (std::size_t i = 0; i < film.pixels.size(); ++i) {

@@ -62,6 +62,7 @@ private:
     const FlatScene &flat_;
     const RenderOptions &options_;
     FilmExtent extent_;
+    ControlLayout control_layout_;
     std::size_t group_;
     cl::Context context_;
     cl::CommandQueue queue_;
@@ -69,7 +70,7 @@ private:
     cl::Kernel kernel_;
     cl_uint launch_arguments_ = 0;
     std::unique_ptr<DeviceScene> scene_;
-    cl::Buffer film_, counters_;
+    cl::Buffer film_, counters_, control_;
     std::unique_ptr<ProfileRecorder> recorder_; ///< where a profile is wanted
     double paths_done_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};

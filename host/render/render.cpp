@@ -76,6 +76,10 @@ RenderResult render_at_precision(const Scene &scene, const RenderOptions &option
     flat.config.PROFILE = options.profile != nullptr ? 1 : 0;
     flat.frame.seed = options.seed;
     flat.frame.total_samples = static_cast<uint>(spp);
+    // Independent samples need no control.
+    if (options.with_variance && !options.independent_sampler)
+        flat.frame.control_group = static_cast<uint>(choose_control_group(
+            {flat.frame.width, flat.frame.height, static_cast<std::size_t>(flat.config.TILE)}));
     stats.lanes = flat.config.LANES;
     stats.width = static_cast<int>(flat.frame.width);
     stats.height = static_cast<int>(flat.frame.height);

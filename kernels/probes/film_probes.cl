@@ -22,7 +22,7 @@ __kernel void probe_film_pixel(__global const FrameData *frame, __global FilmPix
     for (uint b = 0; CLR_BLOCK_START(b) < samples; ++b) {
         const uint start = CLR_BLOCK_START(b);
         const uint end = min(CLR_BLOCK_START(b + 1u), samples);
-        block_clear(&block);
+        block_clear(&block, 0);
         for (uint i = start; i < end; i += LANES) {
             int_l sample = as_int_l(lane_index() + i);
             mask_l on = ilt(sample, int_of((int)end));

@@ -54,7 +54,8 @@ typedef struct {
     clr_real final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
                               looks small */
     int film_exponent;        /* the film's unit of colour is 2^film_exponent */
-    uint pad2[3];
+    uint control_group;       /* tiles of which one is a control tile; 0: there are none */
+    uint pad2[2];
     clr_real
         planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
     clr_real lens_share;    /* of the offset on the lens that is left at the start of a ray */
