@@ -22,6 +22,7 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.generality = how.generality;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;
+    options.with_variance = true;
     RenderResult result = render_scene(scene, options);
     MeasuredImage measured{std::move(result.image), std::move(result.variance), {}};
     measured.mean_se = standard_error_of_mean(measured.variance, scene.film.filter);
