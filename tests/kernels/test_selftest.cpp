@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fmt/core.h>
+#include <set>
 
 using namespace clrender;
 using namespace clrender::selftest;
@@ -36,7 +37,54 @@ void expect(Checks (*check)(ProbeDevice &)) {
     }
 }
 
+/// The embedded sources with one change.
+std::vector<KernelSource> changed(const std::string &file, const std::string &from,
+                                  const std::string &to) {
+    std::vector<KernelSource> sources = embedded_kernel_sources();
+    for (KernelSource &source : sources) {
+        const std::size_t at = source.name == file ? source.text.find(from) : std::string::npos;
+        if (at != std::string::npos) {
+            source.text.replace(at, from.size(), to);
+            return sources;
+        }
+    }
+    FAIL("no '" << from << "' in " << file);
+    return sources;
+}
+
 } // namespace
+
+TEST_CASE("device functions: a wrong kernel fails the check of the function that is wrong") {
+    struct Fault {
+        const char *file, *from, *to; ///< the change
+        Checks (*check)(ProbeDevice &);
+        const char *function; ///< that has to fail, and no function beside it
+    };
+    const std::vector<Fault> faults{
+        {"sphere.clh", "real near = along - root;", "real near = along - 0.999f * root;",
+         check_spheres, "sphere_intersect"},
+        {"planar.clh", "real t = -above / v3_dot(n, d);",
+         "real t = 1.0001f * -above / v3_dot(n, d);", check_planars, "planar_intersect"},
+        {"texture.clh", "return m < n ? m : period - 1 - m;", "return m < n ? m : period - m - 2;",
+         check_textures, "texture_apply"},
+        {"environment.clh", "lower - upper, upper);", "lower - upper, 1.01f * upper);",
+         check_environment, "env_eval"},
+        {"light.clh", "real drop = u1 * cap;", "real drop = u1 * u1 * cap;", check_lights,
+         "light_sample_local"},
+        {"sampling.clh", "real r = sqrt(u2);", "real r = u2;", check_math, "sample_cosine"},
+    };
+    const char *number = std::getenv("CLRENDER_TEST_DEVICE");
+    const DeviceEntry entry = choose_device(number != nullptr ? number : "0");
+    for (const Fault &fault : faults) {
+        ProbeDevice device(entry, 4, changed(fault.file, fault.from, fault.to), 0.05);
+        std::set<std::string> wrong;
+        for (const Check &row : fault.check(device))
+            if (!row.passed())
+                wrong.insert(row.function);
+        INFO(fault.file << ": " << fault.to);
+        CHECK(wrong == std::set<std::string>{fault.function});
+    }
+}
 
 TEST_CASE("device functions: small mathematics", "[oclgrind]") {
     expect(check_math);
