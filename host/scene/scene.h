@@ -59,6 +59,7 @@ struct Mesh {
     std::vector<glm::vec3> normals; ///< per vertex, unit length, or empty: flat
     std::vector<glm::vec2> uvs;     ///< per vertex, or empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    bool has_computed_normals = false; ///< the file states none: they are smooth_normals()
 };
 
 enum class ShapeKind { sphere, rectangle, disk, mesh };
