@@ -35,7 +35,7 @@ struct ObjFile {
 };
 
 /// All triangles of an OBJ file as one mesh, as Mitsuba's `obj` reads it (materials ignored,
-/// polygons as fans, normals as Mitsuba gives them). Errors name `path` and the line, or
+/// polygons cut into triangles, normals as Mitsuba gives them). Errors name `path` and the line, or
 /// `referrer` if the file cannot be opened. Throws InputError.
 Mesh read_obj_mesh(const std::string &path, const MeshReadOptions &options,
                    const SourceLocation &referrer = {});

@@ -1,10 +1,11 @@
 /// OBJ files, through tinyobjloader: it parses the numbers of lines that have been checked, we
-/// resolve and check the indices, join equal corners and cut polygons into fans.
+/// resolve and check the indices, join equal corners and cut polygons into triangles.
 
 #include "../log.h"
 #include "mesh_io.h"
 #include "mesh_mtl.h"
 #include "mesh_normals.h"
+#include "mesh_polygons.h"
 #include "obj_lines.h"
 
 #define TINYOBJLOADER_USE_DOUBLE
@@ -73,6 +74,8 @@ private:
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
     std::unordered_map<std::string, int> material_indices_;
     int material_ = none;
+    std::vector<std::uint32_t> face_; ///< the vertices of the face at hand
+    MeshPolygons polygons_{mesh};
 };
 
 void ObjBuilder::read() {
@@ -102,6 +105,7 @@ void ObjBuilder::read() {
     tinyobj::LoadObjWithCallback(stream, callbacks, this, nullptr, &warning, &error);
     if (mesh.triangles.empty())
         throw InputError({lines_.where().file, 0}, "no faces, expected at least one f line");
+    polygons_.finish();
 
     // Mitsuba gives coordinates to every vertex as soon as the file has any.
     if (uvs_.empty())
@@ -133,14 +137,11 @@ std::string ObjBuilder::filter(std::string &line) {
 }
 
 void ObjBuilder::add_face(const tinyobj::index_t *corners, int count) {
-    const std::uint32_t first = vertex(corners[0]);
-    std::uint32_t previous = vertex(corners[1]);
-    for (int i = 2; i < count; ++i) {
-        const std::uint32_t next = vertex(corners[i]);
-        mesh.triangles.push_back({first, previous, next});
-        triangle_material.push_back(material_);
-        previous = next;
-    }
+    face_.clear();
+    for (int i = 0; i < count; ++i)
+        face_.push_back(vertex(corners[i]));
+    polygons_.add(face_, lines_.where());
+    triangle_material.resize(mesh.triangles.size(), material_);
 }
 
 std::uint32_t ObjBuilder::vertex(const tinyobj::index_t &index) {
