@@ -11,6 +11,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace clrender::mitsuba {
@@ -35,7 +36,7 @@ private:
     // mitsuba_textures.cpp; all return indices into Scene::textures
     int add_constant(const Rgb &value);
     int read_texture(int object, SpectrumUse use);
-    int read_bitmap(Properties &properties);
+    int read_bitmap(Properties &properties, SpectrumUse use);
     int read_checkerboard(Properties &properties);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     /// The colour or texture `name` of an object, or none.
@@ -72,8 +73,9 @@ private:
 
     const Document &document_;
     Scene scene_;
-    bool load_images_ = true;             ///< off while objects that no shape uses are checked
-    std::map<int, int> bsdfs_, textures_; ///< by object
+    bool load_images_ = true;  ///< off while objects that no shape uses are checked
+    std::map<int, int> bsdfs_; ///< by object
+    std::map<std::pair<int, SpectrumUse>, int> textures_;
     std::map<double, int> default_bsdfs_; ///< by reflectance
     std::set<int> open_bsdfs_, area_emitters_;
     SceneFiles files_;

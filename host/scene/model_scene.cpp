@@ -94,7 +94,7 @@ int add_material(Scene &scene, const ObjMaterial &material, SceneFiles &files) {
 
     Texture texture;
     texture.kind = TextureKind::bitmap;
-    texture.bitmap = files.image(material.diffuse_map);
+    texture.bitmap = files.image(material.diffuse_map, {}, {});
     scene.textures.push_back(std::move(texture));
     return add_diffuse(scene, static_cast<int>(scene.textures.size()) - 1);
 }

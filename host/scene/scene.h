@@ -30,7 +30,7 @@ struct Texture {
     TextureKind kind = TextureKind::constant;
     Rgb value{0.5};                      ///< constant
     std::shared_ptr<const Image> bitmap; ///< bitmap; shared by all textures that name the same file
-    bool raw = false;                    ///< bitmap: u8 data are linear, not sRGB-encoded
+    bool raw = false; ///< bitmap: u8 data are linear, not sRGB-encoded (f32: always)
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard
