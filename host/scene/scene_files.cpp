@@ -81,15 +81,28 @@ std::string normal(const std::string &path) {
 
 } // namespace
 
+void SceneFiles::read_into(Image &image, const std::string &path, const SourceLocation &where,
+                           const ImageUse &use) {
+    try {
+        image = read_image(path, where, use.raw);
+        repair_values(image, path, where, image.is_converted && !use.is_light);
+    } catch (const InputError &error) {
+        if (!use.is_optional)
+            throw;
+        // The error begins with the place, as the warning does.
+        const std::string reason = error.what();
+        log::warn(where, reason.substr(std::min(where.str().size() + 2, reason.size())) +
+                             "; a plain colour is used");
+    }
+}
+
 std::shared_ptr<const Image> SceneFiles::image(const std::string &path, const SourceLocation &where,
                                                const ImageUse &use) {
-    std::shared_ptr<const Image> &known = images_[{normal(path), use.raw, use.is_light}];
+    std::shared_ptr<const Image> &known =
+        images_[{normal(path), use.raw, use.is_light, use.is_optional}];
     if (!known) {
         const auto image = std::make_shared<Image>();
-        reads_.add([image, path, where, use] {
-            *image = read_image(path, where, use.raw);
-            repair_values(*image, path, where, image->is_converted && !use.is_light);
-        });
+        reads_.add([image, path, where, use] { read_into(*image, path, where, use); });
         known = image;
     }
     return known;

@@ -17,8 +17,9 @@ namespace clrender {
 enum class MeshFormat { obj, ply };
 
 struct ImageUse {
-    bool raw = false;      ///< 16-bit values are linear, else they are decoded from sRGB
-    bool is_light = false; ///< no value may be negative
+    bool raw = false;         ///< 16-bit values are linear, else they are decoded from sRGB
+    bool is_light = false;    ///< no value may be negative
+    bool is_optional = false; ///< if it cannot be read, this is warned of and the image is empty
 };
 
 class SceneFiles {
@@ -38,9 +39,12 @@ public:
     void read();
 
 private:
+    static void read_into(Image &image, const std::string &path, const SourceLocation &where,
+                          const ImageUse &use);
+
     FileReads reads_;
     std::vector<std::function<void()>> checks_;
-    std::map<std::tuple<std::string, bool, bool>, std::shared_ptr<const Image>> images_;
+    std::map<std::tuple<std::string, bool, bool, bool>, std::shared_ptr<const Image>> images_;
     std::map<std::tuple<std::string, MeshFormat, bool, bool>, std::shared_ptr<const Mesh>> meshes_;
 };
 
