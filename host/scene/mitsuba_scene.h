@@ -7,6 +7,7 @@
 #include "scene_files.h"
 #include "spectrum.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -18,13 +19,16 @@ namespace clrender::mitsuba {
 
 class SceneReader {
 public:
-    explicit SceneReader(const Document &document) : document_(document) {}
+    /// `all_faults`: what is wrong with one object does not keep the others from being read.
+    explicit SceneReader(const Document &document, bool all_faults = false)
+        : document_(document), all_faults_(all_faults) {}
 
-    /// Throws InputError.
+    /// Throws InputError, with a line for each fault if all are asked for.
     Scene read();
 
 private:
     // mitsuba_scene.cpp
+    void attempt(const std::function<void()> &step);
     void read_shapes(Properties &root);
     void read_scene_emitters(Properties &root);
     void read_files();
@@ -72,6 +76,8 @@ private:
     void read_integrator(int object);
 
     const Document &document_;
+    bool all_faults_;
+    std::vector<std::string> faults_; ///< lines, each once
     Scene scene_;
     bool load_images_ = true;  ///< off while objects that no shape uses are checked
     std::map<int, int> bsdfs_; ///< by object

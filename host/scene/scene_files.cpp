@@ -128,8 +128,8 @@ void SceneFiles::then(std::function<void()> check) {
     checks_.push_back(std::move(check));
 }
 
-void SceneFiles::read() {
-    reads_.run();
+void SceneFiles::read(bool all_faults) {
+    reads_.run(all_faults);
     for (const auto &check : std::exchange(checks_, {}))
         check();
 }

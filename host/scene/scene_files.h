@@ -35,8 +35,8 @@ public:
 
     /// Reads all that has been asked for since. Images have only finite values, and negative ones
     /// only where a reflectance lies outside of sRGB; what had to be replaced is warned of. Throws
-    /// InputError, of the file that was asked for first if several are bad.
-    void read();
+    /// InputError, of the file that was asked for first if several are bad, or of all.
+    void read(bool all_faults = false);
 
 private:
     static void read_into(Image &image, const std::string &path, const SourceLocation &where,
