@@ -60,6 +60,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     RenderOptions r;
     r.seed = options.seed.value_or(0);
     r.lanes = options.lanes;
+    r.double_precision = options.double_precision;
     r.device = options.device;
     r.brute_force = options.accel == cli::Accel::none;
     r.pixel_centers = options.pixel_centers;

@@ -192,6 +192,7 @@ std::string check_feature(const std::string &name) {
 struct RawOptions {
     std::string resolution;
     std::string lanes = "auto";
+    std::string precision = "single";
     std::string accel = "bvh";
     std::string sampler = "sobol";
     std::string light_samples = "auto";
@@ -283,6 +284,11 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("N")
         ->check(one_of({"auto", "1", "4", "8", "16"}))
         ->group(group);
+    app.add_option("--precision", raw.precision,
+                   "single, or double: slow, to tell what rounding does (default: single)")
+        ->type_name("NAME")
+        ->check(one_of({"single", "double"}))
+        ->group(group);
     app.add_option("--kernel-dir", options.kernel_dir,
                    "Kernel sources instead of the built-in ones")
         ->type_name("FOLDER")
@@ -343,6 +349,7 @@ void finish_options(Options &options, const RawOptions &raw) {
                        : raw.strategy == "bsdf" ? Strategy::bsdf
                                                 : Strategy::mis;
     options.independent = raw.sampler == "independent";
+    options.double_precision = raw.precision == "double";
     options.profile = !raw.profile.empty();
     if (raw.profile != bare_profile)
         options.profile_trace = raw.profile;
@@ -364,7 +371,7 @@ void finish_options(Options &options, const RawOptions &raw) {
 }
 
 /// What the options may not say together. Throws CLI::ParseError.
-void check_combination(const Options &options) {
+void check_combination(const Options &options, const RawOptions &raw) {
     const auto refuse = [](const std::string &text) {
         throw CLI::ParseError(text, CLI::ExitCodes::ValidationError);
     };
@@ -374,6 +381,8 @@ void check_combination(const Options &options) {
         refuse("compare takes two pictures and no SCENE");
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
+    if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
+        refuse("--precision double traces one path at a time, it excludes --lanes " + raw.lanes);
     std::set<std::string> files;
     for (const std::string &output : options.outputs)
         if (!files.insert(fs::path(output).lexically_normal().string()).second)
@@ -405,7 +414,7 @@ ParseResult parse_options(int argc, const char *const *argv) {
         options.command = raw.list_devices    ? Command::list_devices
                           : compare->parsed() ? Command::compare
                                               : Command::render;
-        check_combination(options);
+        check_combination(options, raw);
     } catch (const CLI::Success &help_or_version) {
         return {std::nullopt, app.exit(help_or_version)};
     } catch (const CLI::ParseError &mistake) {

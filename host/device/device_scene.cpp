@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fmt/core.h>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -86,4 +86,4 @@ cl_uint DeviceScene::bind(cl::Kernel &kernel) const {
     return index;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -5,18 +5,23 @@
 
 #include <map>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
+
+/// Some of FlatScene::corners, one after the other.
+struct TriangleRange {
+    std::size_t first = 0, count = 0;
+};
 
 /// A flat scene in the making: how the scene's numbers map to the flat one's.
 struct Flattening {
     const Scene &scene;
     const FlattenOptions &options;
     FlatScene flat{};
-    std::map<int, uint> texture_index{};      ///< by Scene::textures
-    std::map<int, uint> material_index{};     ///< by Scene::bsdfs, not twosided
-    std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
-    std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
-    std::map<int, std::size_t> first_triangle_of_shape{}; ///< by Scene::shapes, meshes
+    std::map<int, uint> texture_index{};               ///< by Scene::textures
+    std::map<int, uint> material_index{};              ///< by Scene::bsdfs, not twosided
+    std::map<int, uint> sides_of_bsdf{};               ///< by Scene::bsdfs, as ShapeInfo::materials
+    std::map<int, uint> primitive_of_shape{};          ///< by Scene::shapes, spheres and planars
+    std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
     bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
 
@@ -24,7 +29,9 @@ struct Flattening {
     [[nodiscard]] bool wants(const char *name) const { return options.generality.count(name) != 0; }
 };
 
-/// Where the scene is put, so that what the camera is near to lies within a unit of the origin.
+/// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
+/// inverse of their sizes, and the unit is their median distance from it. Neither depends on the
+/// camera, nor do they move for something that is far away or huge.
 Placement choose_placement(const Scene &scene);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
@@ -32,7 +39,7 @@ void flatten_materials(Flattening &work);
 
 /// Index of a texture in the flat scene; CLR_NONE for a constant one and for none, whose colour
 /// (`absent` for none) goes to constant[0..2].
-uint flatten_texture(Flattening &work, int texture, Rgb absent, float *constant);
+uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant);
 
 /// Spheres, planars, meshes and the BVH; shape infos name emitters by Scene's index.
 void flatten_shapes(Flattening &work);
@@ -57,4 +64,4 @@ void flatten_camera(Flattening &work);
 /// Relative luminance of linear sRGB (Rec. 709).
 double luminance(const Rgb &c);
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

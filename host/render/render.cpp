@@ -1,4 +1,4 @@
-#include "render.h"
+#include "render_at_precision.h"
 
 #include "device/cl_context.h"
 #include "device/device_scene.h"
@@ -20,7 +20,7 @@
 #include <memory>
 #include <numeric>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -312,7 +312,7 @@ int tile_of(const DeviceEntry &entry, const KernelConfig &config) {
 
 } // namespace
 
-std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
+std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options) {
     FlatScene flat = flatten(scene, flatten_options(options));
     build_hierarchy(flat);
     int tile = cpu_tile;
@@ -324,7 +324,7 @@ std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options
     return flat.bytes() + FilmExtent(flat.frame, static_cast<std::size_t>(tile)).bytes();
 }
 
-RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
+RenderResult render_at_precision(const Scene &scene, const RenderOptions &options) {
     RenderResult result;
     RenderStats &stats = result.stats;
     Stopwatch watch(options.profile);
@@ -333,9 +333,13 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     stats.seconds_device = watch.lap("open the device");
     log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
 
+    if (CLR_DOUBLE != 0 && !entry.has_double)
+        throw DeviceError(fmt::format("{} has no double precision (cl_khr_fp64)", entry.name));
+
     FlatScene flat = flatten(scene, flatten_options(options));
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
-    flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
+    flat.config.DOUBLE_PRECISION = CLR_DOUBLE;
+    flat.config.LANES = CLR_DOUBLE ? 1 : options.lanes > 0 ? options.lanes : natural_lanes(entry);
     flat.config.TILE = tile_of(entry, flat.config);
     flat.config.SAMPLER = options.independent_sampler ? 1 : 0;
     flat.config.PROFILE = options.profile != nullptr ? 1 : 0;
@@ -371,4 +375,4 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     return result;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -4,7 +4,7 @@
 
 #include "shared/shared_types.h"
 
-CLR_SHARED_BEGIN
+CLR_PRECISION_BEGIN
 
 /* Samples are summed in blocks of this many, each from zero and in an order that depends on nothing
    but the scene and the width of the kernel. A launch traces whole blocks, so the picture does not
@@ -15,45 +15,57 @@ CLR_SHARED_BEGIN
    A pixel position (x, y), in pixels from the corner of the whole film, looks along
    corner + x step_x + y step_y, whose component along the axis is 1. */
 typedef struct {
-    float origin[3];
-    float near_clip; /* along the axis; 0 where the scene states none */
-    float corner[3];
-    float far_clip; /* along the axis; INFINITY where the scene states none */
-    float step_x[3];
-    float aperture_radius;
-    float step_y[3];
-    float focus_distance;
-    float axis[3];
-    float length_unit; /* scene units per renderer's unit, for the depth integrator */
-    float lens_x[3];
-    float env_alpha; /* of camera rays that leave the scene */
-    float lens_y[3];
-    float shadow_free_distance; /* from the only light, the first SHADOW_FREE_COUNT spheres
+    clr_real start[3];  /* the film's corner at the depth where camera rays start */
+    clr_real near_clip; /* along the axis, from the start */
+    clr_real corner[3];
+    clr_real far_clip; /* likewise; INFINITY where the scene states none */
+    clr_real step_x[3];
+    clr_real aperture_radius;
+    clr_real step_y[3];
+    clr_real focus_distance;
+    clr_real axis[3];
+    clr_real length_unit; /* scene units per renderer's unit, for the depth integrator */
+    clr_real lens_x[3];
+    clr_real env_alpha; /* of camera rays that leave the scene */
+    clr_real lens_y[3];
+    clr_real shadow_free_distance; /* from the only light, the first SHADOW_FREE_COUNT spheres
                                    cannot come between it and a point that is nearer */
-    float env_radiance[3];      /* of a constant environment */
-    float env_probability;      /* that light sampling chooses the environment */
-    float env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
-    uint env_width;             /* pixels of the map */
+    clr_real env_radiance[3];      /* of a constant environment */
+    clr_real env_probability;      /* that light sampling chooses the environment */
+    clr_real env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
+    uint env_width;                /* pixels of the map */
     uint env_height;
-    float env_density; /* of light sampling, per solid angle: this times the weight of the place,
+    clr_real env_density; /* of light sampling, per solid angle: this times the weight of the place,
                           times the sines of the row's middle over that of the place */
-    int max_depth;     /* edges of the longest path; INT_MAX: unbounded */
-    int rr_depth;      /* roulette from this depth on; INT_MAX: never */
-    uint width;        /* of the picture (the crop window), pixels */
+    int max_depth;        /* edges of the longest path; INT_MAX: unbounded */
+    int rr_depth;         /* roulette from this depth on; INT_MAX: never */
+    uint width;           /* of the picture (the crop window), pixels */
     uint height;
     int crop_x; /* of the crop window within the whole film */
     int crop_y;
     uint seed;
-    uint prim_bvh_sphere; /* first primitive that is a sphere in the BVH */
-    uint total_samples;   /* a pixel, over all launches */
-    float filter_radius;  /* pixels */
-    uint triangle_blocks; /* in the BVH's leaves */
+    uint prim_bvh_sphere;   /* first primitive that is a sphere in the BVH */
+    uint total_samples;     /* a pixel, over all launches */
+    clr_real filter_radius; /* pixels */
+    uint triangle_blocks;   /* in the BVH's leaves */
     uint sphere_blocks;
-    float final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
+    clr_real final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
                               looks small */
-    uint pad2[4];
+    clr_real
+        planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
+    clr_real lens_share;    /* of the offset on the lens that is left at the start of a ray */
+    clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
+    clr_real first_leg;     /* HAS_FAR_CAMERA: depth of the start, from the near clip plane */
+    clr_real start_x[3];    /* a pixel's width there */
+    clr_real pad0;
+    clr_real start_y[3];
+    clr_real pad1;
 } FrameData;
-CLR_STATIC_SIZE(FrameData, 256);
+CLR_STATIC_SIZE(FrameData, CLR_EITHER(288, 528));
+
+CLR_PRECISION_END
+
+CLR_SHARED_BEGIN
 
 /* Sums over the samples of a pixel, w being the filter's weight of a sample: of w R, w G, w B,
    w alpha, w and w^2 (the last two of eight are unused), with the compensation of Kahan's

@@ -1,0 +1,163 @@
+#include "shape_parts.h"
+#include "triangle_split.h"
+
+#include <limits>
+
+namespace clrender::inline CLR_PRECISION {
+
+namespace {
+
+constexpr clr_real missing = std::numeric_limits<clr_real>::quiet_NaN();
+
+/// The rectangle as two triangles, for scenes with many.
+Mesh rectangle_mesh(bool mirrored) {
+    Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    if (mirrored)
+        mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
+    else
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// What all meshes of the scene have, so that the arrays by vertex are there if any needs them.
+struct VertexData {
+    bool normals = false;
+    bool uvs = false;
+};
+
+/// Vertices that splitting a mesh's triangles adds, behind the mesh's own.
+struct AddedVertices {
+    struct Vertex {
+        std::array<std::uint32_t, 3> parent; ///< corners of the mesh's triangle
+        glm::dvec3 weights;
+    };
+    std::vector<Vertex> vertices;
+};
+
+glm::dvec3 corner_uv(const Mesh &mesh, std::uint32_t vertex, int corner) {
+    // A mesh without coordinates has the barycentrics of its triangles.
+    if (mesh.uvs.empty())
+        return {corner == 1 ? 1 : 0, corner == 2 ? 1 : 0, 0};
+    return {mesh.uvs[vertex], 0};
+}
+
+/// Appends the triangles that a huge one is split into.
+void append_split(const std::array<std::uint32_t, 3> &parent,
+                  const std::array<glm::dvec3, 3> &corners, uint first_added, bool by_vertex,
+                  AddedVertices &added, FlatScene &flat) {
+    for (const SplitTriangle &part : split_triangle(corners)) {
+        flat.corners.push_back(
+            {Vec3(part[0].position), Vec3(part[1].position), Vec3(part[2].position)});
+        for (const SplitVertex &vertex : part) {
+            if (!by_vertex)
+                continue;
+            flat.triangles.push_back(first_added + static_cast<uint>(added.vertices.size()));
+            added.vertices.push_back({parent, vertex.weights});
+        }
+    }
+}
+
+/// Normals and coordinates of the vertices: the mesh's own, then the added ones, between those of
+/// their parents' corners.
+void append_vertex_data(const Shape &shape, const Mesh &mesh, const AddedVertices &added,
+                        VertexData wanted, FlatScene &flat) {
+    const std::size_t own = mesh.positions.size();
+    if (wanted.normals) {
+        const glm::dmat3 inverse_transpose =
+            glm::transpose(glm::inverse(glm::dmat3(shape.to_world)));
+        const auto normal_of = [&](std::uint32_t vertex) {
+            return glm::normalize(inverse_transpose * glm::dvec3(mesh.normals[vertex])) *
+                   (shape.flip_normals ? -1.0 : 1.0);
+        };
+        for (std::size_t i = 0; i < own + added.vertices.size(); ++i) {
+            Vec3 n{missing};
+            if (!mesh.normals.empty() && i < own) {
+                n = Vec3(normal_of(static_cast<std::uint32_t>(i)));
+            } else if (!mesh.normals.empty()) {
+                const auto &[parent, w] = added.vertices[i - own];
+                n = Vec3(normal_of(parent[0]) * w.x + normal_of(parent[1]) * w.y +
+                         normal_of(parent[2]) * w.z);
+            }
+            flat.normals.insert(flat.normals.end(), {n.x, n.y, n.z});
+        }
+    }
+    if (!wanted.uvs)
+        return;
+    for (std::size_t i = 0; i < own; ++i) {
+        const Vec2 uv = mesh.uvs.empty() ? Vec2(missing) : Vec2(mesh.uvs[i]);
+        flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
+    }
+    for (const auto &[parent, w] : added.vertices) {
+        const glm::dvec3 uv = corner_uv(mesh, parent[0], 0) * w.x +
+                              corner_uv(mesh, parent[1], 1) * w.y +
+                              corner_uv(mesh, parent[2], 2) * w.z;
+        flat.uvs.insert(flat.uvs.end(), {static_cast<clr_real>(uv.x), static_cast<clr_real>(uv.y)});
+    }
+}
+
+/// Appends a mesh's triangles to the corners, its vertex data and shape numbers to the flat scene.
+void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flattening &work) {
+    FlatScene &flat = work.flat;
+    const uint shape_number = append_shape(shape, work);
+    const auto exact = [&](std::uint32_t vertex) {
+        return flat.placement.exact(
+            glm::dvec3(shape.to_world * glm::dvec4(mesh.positions[vertex], 1)));
+    };
+    std::vector<Vec3> positions(mesh.positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        positions[i] = Vec3(exact(static_cast<std::uint32_t>(i)));
+
+    // A flipped mesh has its triangles wound the other way round.
+    const std::size_t second = shape.flip_normals ? 2 : 1;
+    const std::size_t third = shape.flip_normals ? 1 : 2;
+    const auto first_vertex = static_cast<uint>(work.vertex_count);
+    const auto first_added = first_vertex + static_cast<uint>(positions.size());
+    const bool by_vertex = wanted.normals || wanted.uvs;
+    AddedVertices added;
+    for (const auto &t : mesh.triangles) {
+        const std::array<std::uint32_t, 3> turned = {t[0], t[second], t[third]};
+        const TriangleCorners corners = {positions[turned[0]], positions[turned[1]],
+                                         positions[turned[2]]};
+        if (wants_split(corners)) {
+            append_split(turned, {exact(turned[0]), exact(turned[1]), exact(turned[2])},
+                         first_added, by_vertex, added, flat);
+        } else {
+            flat.corners.push_back(corners);
+            for (const std::uint32_t vertex : turned)
+                if (by_vertex)
+                    flat.triangles.push_back(first_vertex + vertex);
+        }
+    }
+    flat.shape_of.resize(flat.corners.size(), shape_number);
+    append_vertex_data(shape, mesh, added, wanted, flat);
+    work.vertex_count += positions.size() + added.vertices.size();
+}
+
+} // namespace
+
+void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
+    FlatScene &flat = work.flat;
+    VertexData wanted;
+    wanted.uvs = flat.config.HAS_UVS != 0;
+    wanted.normals = work.wants("HAS_VERTEX_NORMALS");
+    for (const Shape &shape : work.scene.shapes)
+        wanted.normals |= shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
+    for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
+        const Shape &shape = work.scene.shapes[i];
+        const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
+        TriangleRange &range = work.triangles_of_shape[static_cast<int>(i)];
+        range.first = flat.corners.size();
+        if (shape.kind == ShapeKind::mesh)
+            append_mesh(shape, *shape.mesh, wanted, work);
+        else if (shape.kind == ShapeKind::rectangle && rectangles_in_bvh)
+            append_mesh(shape, rectangle_mesh(mirrored), wanted, work);
+        range.count = flat.corners.size() - range.first;
+    }
+    flat.triangle_count = flat.corners.size();
+    flat.config.HAS_TRIANGLES = flat.corners.empty() ? 0 : 1;
+    flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
+}
+
+} // namespace clrender::inline CLR_PRECISION

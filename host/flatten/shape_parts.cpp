@@ -1,0 +1,48 @@
+#include "shape_parts.h"
+
+#include "scene/shape_bounds.h"
+
+#include <algorithm>
+
+namespace clrender::inline CLR_PRECISION {
+
+void store(clr_real (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<clr_real>(v.x);
+    out[1] = static_cast<clr_real>(v.y);
+    out[2] = static_cast<clr_real>(v.z);
+}
+
+bool is_inverted(const Shape &shape) {
+    const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
+    return shape.flip_normals != mirrored;
+}
+
+uint append_shape(const Shape &shape, Flattening &work) {
+    FlatScene &flat = work.flat;
+    flat.shapes.push_back({work.sides_of_bsdf.at(shape.bsdf),
+                           shape.emitter == none ? CLR_NONE : static_cast<uint>(shape.emitter)});
+    if (flat.config.HAS_UVS != 0) {
+        glm::dmat3 to_local{1.0};
+        if (shape.kind == ShapeKind::sphere)
+            to_local = glm::inverse(glm::dmat3(shape.to_world)) * sphere_radius(shape);
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                flat.shape_frames.push_back(static_cast<clr_real>(to_local[column][row]));
+    }
+    return static_cast<uint>(flat.shapes.size() - 1);
+}
+
+void append_no_shape(FlatScene &flat) {
+    flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
+    if (flat.config.HAS_UVS != 0)
+        flat.shape_frames.insert(flat.shape_frames.end(), 9, 0.0f);
+}
+
+const Shape &shape_of_primitive(const Flattening &work, std::size_t primitive) {
+    const auto found = std::find_if(
+        work.primitive_of_shape.begin(), work.primitive_of_shape.end(),
+        [&](const auto &entry) { return entry.second == static_cast<uint>(primitive); });
+    return work.scene.shapes[static_cast<std::size_t>(found->first)];
+}
+
+} // namespace clrender::inline CLR_PRECISION
