@@ -190,11 +190,11 @@ void read_luma_chroma(std::string_view bytes, const std::string &layer, Image &i
     const auto columns = static_cast<std::size_t>(image.width);
     const auto channels = static_cast<std::size_t>(image.channels);
     std::vector<Imf::Rgba> row(columns);
-    for (int y = window.min.y; y <= window.max.y; ++y) {
+    for (int y = 0; y < image.height; ++y) {
         // A row stride of 0: every row is put into the same place.
         file.setFrameBuffer(row.data() - window.min.x, 1, 0);
-        file.readPixels(y);
-        float *target = &image.f32[static_cast<std::size_t>(y - window.min.y) * columns * channels];
+        file.readPixels(window.min.y + y);
+        float *target = &image.f32[static_cast<std::size_t>(y) * columns * channels];
         for (const Imf::Rgba &pixel : row) {
             const std::array<float, 4> values = {pixel.r, pixel.g, pixel.b, pixel.a};
             target = std::copy_n(values.begin(), channels, target);
