@@ -71,6 +71,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.tile = options.tile;
     r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
+    r.with_variance = !options.stats.empty();
     r.profile = options.profile ? &profile : nullptr;
     r.on_progress = [&](double paths) { progress.update(paths); };
     r.should_stop = cli::interrupted;

@@ -22,6 +22,9 @@
 /* Bounces whose numbers are spread evenly over the samples of a pixel. */
 #define ORDERED_BOUNCES 2
 
+/* Turns the seed of a tile into that of its second rendering, where it is a control tile. */
+#define CONTROL_SEED 0xa511e9b3u
+
 /* Lanes that have to be idle before new samples are started. */
 #define REFILL_LANES ((LANES + 3) / 4)
 
@@ -71,6 +74,7 @@ typedef struct {
     int next_x, next_y;
     uint next_sample;
     uint first_sample, end_sample;
+    uint seed;
 } Work;
 
 CLR_INLINE int work_left(const Work *work) {
@@ -123,7 +127,7 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     px += work->x;
     py += work->y;
     uint_l linear = as_uint_l(py * (int)f->width + px);
-    Sampler sampler = sampler_init(f->seed, linear, as_uint_l(sample));
+    Sampler sampler = sampler_init(work->seed, linear, as_uint_l(sample));
     CameraRay ray = camera_ray(scene, px, py, sampler);
     sampler_advance(&sampler, CAMERA_DIMENSIONS);
 #if HAS_CLIP || INTEGRATOR == 1
@@ -196,7 +200,7 @@ CLR_INLINE void paths_finish(const SceneData *scene, Paths *p, const Work *work,
     while (!lanes[first])
         ++first;
     if (!any_lane(finished & ~ieq(p->pixel, int_of(pixel[first])))) {
-        block_add_lanes(block, pixel[first] % TILE, pixel[first] / TILE,
+        block_add_lanes(scene, block, pixel[first] % TILE, pixel[first] / TILE, finished, first,
                         v3_pick(finished, radiance, black), pick(finished, p->alpha, real_of(0.0f)),
                         pick(finished, p->weight, real_of(0.0f)));
         p->pending &= p->alive;
@@ -551,23 +555,22 @@ CLR_INLINE Work tile_of_item(__global const FrameData *frame, uint index, uint c
 
 /* Item i of the launch renders tile first_item + i of those of `colour` (CLR_ALL_TILES: of all),
    the sample blocks [first_block, end_block). */
-__kernel void
-path_trace(__global const FrameData *frame, __global const Sphere *spheres,
-           __global const SphereTest *sphere_tests, __global const Planar *planars,
-           __global const PrimitiveRecord *records, __global const BvhNode *nodes,
-           __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
-           __global const uint *triangles, __global const clr_real *normals,
-           __global const clr_real *uvs, __global const uint *shape_of,
-           __global const ShapeInfo *shapes, __global const clr_real *shape_frames,
-           __global const Material *materials, __global const EmitterInfo *emitters,
-           __global const Light *lights, __global const LightTriangle *light_triangles,
-           __global const LightNode *light_nodes, __global const TextureInfo *textures,
-           __global const uint *texels_u8, __global const clr_real *texels_f32,
-           __global const clr_real *decode, __global const clr_real *env_texels,
-           __global const clr_real *env_cdf, __global const uint *env_guide,
-           __global const clr_real *filter, __global FilmPixel *film,
-           __global ItemCounters *item_counters PROFILE_BUFFER, uint first_item, uint item_count,
-           uint first_block, uint end_block, uint colour, uint stride) {
+__kernel void path_trace(
+    __global const FrameData *frame, __global const Sphere *spheres,
+    __global const SphereTest *sphere_tests, __global const Planar *planars,
+    __global const PrimitiveRecord *records, __global const BvhNode *nodes,
+    __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
+    __global const uint *triangles, __global const clr_real *normals, __global const clr_real *uvs,
+    __global const uint *shape_of, __global const ShapeInfo *shapes,
+    __global const clr_real *shape_frames, __global const Material *materials,
+    __global const EmitterInfo *emitters, __global const Light *lights,
+    __global const LightTriangle *light_triangles, __global const LightNode *light_nodes,
+    __global const TextureInfo *textures, __global const uint *texels_u8,
+    __global const clr_real *texels_f32, __global const clr_real *decode,
+    __global const clr_real *env_texels, __global const clr_real *env_cdf,
+    __global const uint *env_guide, __global const clr_real *filter, __global FilmPixel *film,
+    __global ItemCounters *item_counters, __global ControlPixel *control PROFILE_BUFFER,
+    uint first_item, uint item_count, uint first_block, uint end_block, uint colour, uint stride) {
     if (get_global_id(0) >= item_count)
         return;
     PROFILE_BEGIN(counts);
@@ -586,15 +589,30 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
     const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE;
     ItemCounters counters = item_counters[tile];
     uint rays = 0;
+    ItemCounters uncounted = {0u, 0u, 0u, 0u};
     BlockSums block;
+    const uint all_tiles = tiles * ((frame->height + TILE - 1u) / TILE);
+    const uint group = frame->control_group > 0u ? tile / frame->control_group : 0u;
+    const uint renderings = frame->control_group > 0u &&
+                                    tile == clr_control_tile(group, frame->control_group, all_tiles)
+                                ? 2u
+                                : 1u;
     for (uint b = first_block; b < end_block; ++b) {
-        work.first_sample = b * CLR_BLOCK_SAMPLES;
-        work.end_sample = min(work.first_sample + CLR_BLOCK_SAMPLES, frame->total_samples);
-        work.next_sample = work.first_sample;
-        work.next_x = work.next_y = 0;
-        block_clear(&block);
-        render_block(&scene, work, &block, &rays, &counters);
-        film_add(film, work.x, work.y, (int)frame->width, (int)frame->height, &block);
+        work.first_sample = CLR_BLOCK_START(b);
+        work.end_sample = min(CLR_BLOCK_START(b + 1u), frame->total_samples);
+        const uint samples = work.end_sample - work.first_sample;
+        for (uint rendering = 0; rendering < renderings; ++rendering) {
+            work.seed = rendering == 0u ? frame->seed : frame->seed ^ CONTROL_SEED;
+            work.next_sample = work.first_sample;
+            work.next_x = work.next_y = 0;
+            block_clear(&block, rendering > 0u);
+            render_block(&scene, work, &block, &rays, rendering == 0u ? &counters : &uncounted);
+            if (rendering == 0u)
+                film_add(&scene, film, work.x, work.y, samples, &block);
+            if (renderings > 1u)
+                control_add(control + (size_t)group * TILE_PIXELS, samples, &block,
+                            rendering == 0u ? 1.0f : -1.0f);
+        }
     }
     const uint low = counters.rays_low + rays;
     counters.rays_high += low < rays ? 1u : 0u;

@@ -43,7 +43,12 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
           {"seconds", stats.seconds_kernel}}},
         {"memory", {{"host_bytes", stats.host_bytes}, {"device_bytes", stats.device_bytes}}},
         {"triangles", stats.triangles},
+        {"error",
+         {{"relative_variance", result.error.relative_variance},
+          {"variance_factor", result.error.factor.value},
+          {"variance_factor_error", result.error.factor.error}}},
         {"nonfinite_samples", stats.nonfinite_samples},
+        {"clamped_pixels", stats.clamped_pixels},
     };
     std::ofstream file(path);
     file << json.dump(2) << '\n';

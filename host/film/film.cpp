@@ -1,10 +1,12 @@
 #include "film.h"
 
 #include "../image/color.h"
+#include "film_sums.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace clrender {
 
@@ -37,36 +39,57 @@ bool has_alpha(PixelFormat format) {
            format == PixelFormat::xyza;
 }
 
-/// Kahan's sum: what was lost is still to be taken off.
-double total(const FilmPixel &pixel, int entry) {
-    return static_cast<double>(pixel.sum[entry]) - static_cast<double>(pixel.lost[entry]);
+/// The channels of a pixel: R, G, B, alpha.
+using Channels = std::array<double, 4>;
+constexpr std::size_t alpha = 3;
+
+Channels mean(const PixelSums &sums) {
+    const double weight = sums.weight();
+    Channels mean{};
+    for (int c = 0; weight != 0 && c < 4; ++c)
+        mean[static_cast<std::size_t>(c)] = sums.colour(c) / weight;
+    return mean;
 }
 
-/// Entries of FilmPixel::sum.
-constexpr int entry_alpha = 3;
-constexpr int entry_weight = 4;
-constexpr int entry_weight2 = 5;
-
-/// Weighted mean of a channel: R, G, B, alpha.
-double mean(const FilmPixel &pixel, int channel) {
-    const double weight = total(pixel, entry_weight);
-    return weight != 0 ? total(pixel, channel) / weight : 0;
+/// Of each pixel the sum of squared distances of its samples from their mean; infinite where there
+/// are too few samples to tell.
+std::vector<Channels> scatter(const Film &film) {
+    std::vector<Channels> all;
+    all.reserve(film.pixels.size());
+    const FilmUnits units(film.exponent);
+    for (const FilmPixel &pixel : film.pixels) {
+        const PixelSums sums(pixel, units);
+        Channels &scatter = all.emplace_back();
+        for (int c = 0; c < 4; ++c)
+            scatter[static_cast<std::size_t>(c)] =
+                sums.samples() > 1 ? sums.scatter(c) : std::numeric_limits<double>::infinity();
+    }
+    return all;
 }
 
-/// Standard deviation of that mean: the sum of w^2 (L - mean)^2, multiplied out.
-double deviation(const FilmPixel &pixel, int channel) {
-    const double weight = total(pixel, entry_weight);
-    if (weight == 0)
-        return 0;
-    const double m = mean(pixel, channel);
-    const double square = static_cast<double>(pixel.moment[channel]);
-    const double cross =
-        channel == entry_alpha ? square : static_cast<double>(pixel.moment[4 + channel]);
-    const double weight2 = total(pixel, entry_weight2);
-    const double sum = square - 2 * m * cross + m * m * weight2;
-    // The usual correction of n / (n - 1), with the number of samples that count.
-    const double n = weight * weight / weight2;
-    return n > 1 ? std::sqrt(std::max(sum, 0.0) * n / (n - 1)) / std::abs(weight) : 0;
+/// Each value replaced by the sum of those around it along one axis, times `spread`. `count` values
+/// lie along the axis, `step` apart, in each of the `lines` that begin `line_step` apart.
+std::vector<Channels> spread_along(const std::vector<Channels> &values,
+                                   const std::vector<double> &spread, std::size_t count,
+                                   std::size_t step, std::size_t lines, std::size_t line_step) {
+    const std::size_t border = spread.size() / 2;
+    std::vector<Channels> result(values.size(), Channels{});
+    for (std::size_t line = 0; line < lines; ++line)
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t j = i - std::min(i, border); j < std::min(i + border + 1, count); ++j)
+                for (std::size_t c = 0; c < 4; ++c)
+                    result[line * line_step + i * step][c] +=
+                        spread[border + j - i] * values[line * line_step + j * step][c];
+    return result;
+}
+
+/// The sum of the channels times their coefficients; those that do not count may be infinite.
+double combine(const Rgb &coefficients, const Rgb &colour) {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c)
+        if (coefficients[c] != 0)
+            sum += coefficients[c] * colour[c];
+    return sum;
 }
 
 /// An image whose pixel i is rows * colour(i), with alpha(i) behind where the format has it.
@@ -82,7 +105,7 @@ Image make_image(int width, int height, const std::vector<Rgb> &rows, bool alpha
     for (std::size_t i = 0; i < count; ++i) {
         const Rgb c = colour(i);
         for (const Rgb &row : rows)
-            image.f32.push_back(static_cast<float>(glm::dot(row, c)));
+            image.f32.push_back(static_cast<float>(combine(row, c)));
         if (alpha_channel)
             image.f32.push_back(static_cast<float>(alpha(i)));
     }
@@ -91,24 +114,40 @@ Image make_image(int width, int height, const std::vector<Rgb> &rows, bool alpha
 
 } // namespace
 
-Image film_mean(std::span<const FilmPixel> pixels, int width, int height, PixelFormat format) {
+Image film_mean(const Film &film, PixelFormat format) {
+    std::vector<Channels> means;
+    means.reserve(film.pixels.size());
+    const FilmUnits units(film.exponent);
+    for (const FilmPixel &pixel : film.pixels)
+        means.push_back(mean(PixelSums(pixel, units)));
     Image image = make_image(
-        width, height, colour_rows(format), has_alpha(format),
+        film.width, film.height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
-            return Rgb{mean(pixels[i], 0), mean(pixels[i], 1), mean(pixels[i], 2)};
+            return Rgb{means[i][0], means[i][1], means[i][2]};
         },
-        [&](std::size_t i) { return mean(pixels[i], entry_alpha); });
+        [&](std::size_t i) { return means[i][alpha]; });
     image.color_space = color_space(format);
     return image;
 }
 
-Image film_variance(std::span<const FilmPixel> pixels, int width, int height, PixelFormat format) {
+Image film_variance(const Film &film, PixelFormat format) {
+    const auto width = static_cast<std::size_t>(film.width);
+    const auto height = static_cast<std::size_t>(film.height);
+    std::vector<Channels> values = scatter(film);
+    values = spread_along(values, film.spread, width, 1, height, width);
+    values = spread_along(values, film.spread, height, width, width, 1);
+    const FilmUnits units(film.exponent);
+    const auto deviation = [&](std::size_t i, std::size_t c) {
+        const double weight = PixelSums(film.pixels[i], units).weight();
+        return weight != 0 ? std::sqrt(values[i][c]) / std::abs(weight)
+                           : std::numeric_limits<double>::infinity();
+    };
     Image image = make_image(
-        width, height, colour_rows(format), has_alpha(format),
+        film.width, film.height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
-            return Rgb{deviation(pixels[i], 0), deviation(pixels[i], 1), deviation(pixels[i], 2)};
+            return Rgb{deviation(i, 0), deviation(i, 1), deviation(i, 2)};
         },
-        [&](std::size_t i) { return deviation(pixels[i], entry_alpha); });
+        [&](std::size_t i) { return deviation(i, alpha); });
     for (float &value : image.f32)
         value *= value;
     image.color_space = color_space(format);

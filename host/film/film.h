@@ -5,15 +5,29 @@
 #include "shared/launch_data.h"
 
 #include <span>
+#include <vector>
 
 namespace clrender {
 
-/// The weighted mean of each pixel, in the channels of `format`; a pixel without samples is black.
-Image film_mean(std::span<const FilmPixel> pixels, int width, int height, PixelFormat format);
+/// The sums of a picture, row by row.
+struct Film {
+    int width = 0, height = 0;
+    int exponent = 0; ///< FrameData::film_exponent
+    /// What a sample adds to the variance of the pixels around it, along one axis of the separable
+    /// filter, the pixel it lies in in the middle: the mean of the squared filter over the sample's
+    /// places in its pixel (filter_spread()). {1} where a sample counts for its own pixel alone.
+    std::vector<double> spread{1.0};
+    std::vector<FilmPixel> pixels;
+};
 
-/// The estimated variance of each mean: of a ratio of sums, to first order (Cochran, "Sampling
-/// Techniques", 1977, section 6.4). Per channel for RGB and alpha; for the other formats the bound
-/// that holds however R, G and B are correlated.
-Image film_variance(std::span<const FilmPixel> pixels, int width, int height, PixelFormat format);
+/// The weighted mean of each pixel, in the channels of `format`; a pixel without samples is black.
+Image film_mean(const Film &film, PixelFormat format);
+
+/// The estimated variance of each mean, were the samples of a pixel independent: of a ratio of
+/// sums, to first order (Cochran, "Sampling Techniques", 1977, section 6.4), from the scatter of
+/// the samples within the pixels that they lie in, the number of samples in each being fixed.
+/// Infinite where a pixel has fewer than two. Per channel for RGB and alpha; for the other formats
+/// the bound that holds however R, G and B are correlated.
+Image film_variance(const Film &film, PixelFormat format);
 
 } // namespace clrender

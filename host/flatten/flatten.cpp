@@ -28,6 +28,7 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
     flatten_shapes(work);
     flatten_lights(work);
     flatten_camera(work);
+    work.flat.frame.film_exponent = film_exponent(scene, work.flat.placement);
     apply_generality(options.generality, work.flat);
     return std::move(work.flat);
 }

@@ -23,6 +23,16 @@ void store(clr_real (&out)[3], const glm::dvec3 &v) {
     out[2] = static_cast<clr_real>(v.z);
 }
 
+/// As float32 has it. What the light tree is made of is rounded in either precision, so that both
+/// have the same tree, and choose the same lights.
+double in_single(clr_real value) {
+    return double{static_cast<float>(value)};
+}
+
+glm::dvec3 in_single(const clr_real (&v)[3]) {
+    return {in_single(v[0]), in_single(v[1]), in_single(v[2])};
+}
+
 /// Mean luminance of a texture; of a bitmap's texels, which may be off by what a mesh shows of it.
 double mean_luminance(const Texture &texture) {
     if (texture.kind == TextureKind::constant)
@@ -66,7 +76,8 @@ void add_point(const Flattening &work, std::size_t index, LightList &list) {
     Light light{};
     light.kind = CLR_LIGHT_POINT;
     light.texture = CLR_NONE;
-    const glm::dvec3 place = work.flat.placement.apply(emitter.position);
+    const Placement &placement = work.flat.placement;
+    const glm::dvec3 place = (emitter.position - placement.center) * placement.scale;
     store(light.position, place);
     store(light.radiance, emitter.intensity * unit * unit);
     const double intensity = luminance(emitter.intensity) * unit * unit;
@@ -83,8 +94,8 @@ void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent 
     glm::dvec3 sum{0.0};
     glm::dvec3 normal[3];
     for (std::size_t c = 0; c < 3; ++c) {
-        normal[c] = {triangle.normals[3 * c], triangle.normals[3 * c + 1],
-                     triangle.normals[3 * c + 2]};
+        normal[c] = {in_single(triangle.normals[3 * c]), in_single(triangle.normals[3 * c + 1]),
+                     in_single(triangle.normals[3 * c + 2])};
         sum += normal[c];
     }
     extent.cosine = -1;
@@ -94,6 +105,20 @@ void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent 
     extent.cosine = 1;
     for (const glm::dvec3 &n : normal)
         extent.cosine = std::min(extent.cosine, glm::dot(n, extent.axis));
+}
+
+LightExtent triangle_extent(const LightTriangle &triangle, const TriangleCorners &corner,
+                            double radiance) {
+    const glm::vec3 rounded[3] = {glm::vec3(corner[0]), glm::vec3(corner[1]), glm::vec3(corner[2])};
+    const glm::dvec3 e1(rounded[1] - rounded[0]), e2(rounded[2] - rounded[0]);
+    const double area = 0.5 * glm::length(glm::cross(e1, e2));
+    LightExtent extent;
+    extent.lower = glm::min(glm::min(rounded[0], rounded[1]), rounded[2]);
+    extent.upper = glm::max(glm::max(rounded[0], rounded[1]), rounded[2]);
+    extent.intensity = area * radiance;
+    if (area > 0)
+        set_cone(triangle, glm::normalize(glm::cross(e1, e2)), extent);
+    return extent;
 }
 
 /// One light for each triangle, so that its number tells the light; those of no area are never
@@ -128,13 +153,7 @@ void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, doubl
         light.prim = static_cast<uint>(flat.light_triangles.size());
         light.area = static_cast<clr_real>(area);
         flat.light_triangles.push_back(triangle);
-        LightExtent extent;
-        extent.lower = glm::min(glm::min(corner[0], corner[1]), corner[2]);
-        extent.upper = glm::max(glm::max(corner[0], corner[1]), corner[2]);
-        extent.intensity = area * radiance;
-        if (area > 0)
-            set_cone(triangle, glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2))), extent);
-        list.add(light, extent);
+        list.add(light, triangle_extent(triangle, corner, radiance));
     }
 }
 
@@ -186,8 +205,8 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
             return;
         }
         info.density = 1;
-        const glm::dvec3 center(sphere.center[0], sphere.center[1], sphere.center[2]);
-        const double radius = sphere.radius;
+        const glm::dvec3 center = in_single(sphere.center);
+        const double radius = in_single(sphere.radius);
         list.add(
             light,
             {center - radius, center + radius, {0, 0, 1}, -1, pi * radius * radius * radiance});
@@ -204,13 +223,13 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     info.density = 1 / planar.area;
     LightExtent extent;
     for (int c = 0; c < 3; ++c) {
-        const double reach = std::abs(double{planar.du[c]}) + std::abs(double{planar.dv[c]});
-        extent.lower[c] = planar.origin[c] - reach;
-        extent.upper[c] = planar.origin[c] + reach;
-        extent.axis[c] = planar.normal[c];
+        const double reach = std::abs(in_single(planar.du[c])) + std::abs(in_single(planar.dv[c]));
+        extent.lower[c] = in_single(planar.origin[c]) - reach;
+        extent.upper[c] = in_single(planar.origin[c]) + reach;
+        extent.axis[c] = in_single(planar.normal[c]);
     }
     extent.cosine = 1;
-    extent.intensity = light.area * radiance;
+    extent.intensity = in_single(light.area) * radiance;
     list.add(light, extent);
 }
 

@@ -61,6 +61,11 @@ Strategy strategy_of(const Flattening &work);
 /// Camera, film and the bounds of the bounce loop.
 void flatten_camera(Flattening &work);
 
+/// The film's unit of colour (FrameData::film_exponent): the power of two above the largest
+/// radiance that a light of the scene gives, so that a film that is brighter by a power of two has
+/// the same bits. One of depths is a distance that scenes seldom reach.
+int film_exponent(const Scene &scene, const Placement &placement);
+
 /// Relative luminance of linear sRGB (Rec. 709).
 double luminance(const Rgb &c);
 

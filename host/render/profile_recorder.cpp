@@ -78,8 +78,8 @@ void ProfileRecorder::take_counts(int first_block, int end_block) {
 
     const ProfileCounts now = sum_of_slots(read.counters);
     ProfilePass pass;
-    pass.first_sample = first_block * CLR_BLOCK_SAMPLES;
-    pass.end_sample = end_block * CLR_BLOCK_SAMPLES;
+    pass.first_sample = CLR_BLOCK_START(first_block);
+    pass.end_sample = CLR_BLOCK_START(end_block);
     for (std::size_t i = 0; i < now.size(); ++i)
         pass.counts[i] = now[i] - before_[i];
     before_ = now;

@@ -2,6 +2,7 @@
 /// From a parsed scene to a picture.
 
 #include "device/kernel_config.h"
+#include "film/control.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -22,6 +23,7 @@ struct RenderOptions {
     bool brute_force = false;         ///< test every triangle
     bool pixel_centers = false;       ///< all samples at pixel centres
     bool independent_sampler = false; ///< in place of Sobol' points
+    bool with_variance = false;       ///< RenderResult::variance and its error are wanted
     Strategy strategy = Strategy::mis;
     int light_samples = 0;            ///< where a path first meets a diffuse surface: a power
                                       ///< of 2; 0: chosen
@@ -50,13 +52,26 @@ struct RenderStats {
     std::size_t triangles = 0;
     double nonfinite_samples = 0;
     int nonfinite_x = 0, nonfinite_y = 0; ///< the first pixel that had one
+    std::size_t clamped_pixels = 0;       ///< with sums beyond the film's range (FilmPixel)
+    int clamped_x = 0, clamped_y = 0;     ///< the first of them
 };
 
-/// `image` has the channels of the film's pixel format; `variance` has as many and holds the
-/// estimated variance of each pixel's mean (of luminance: an upper bound).
+/// What a render knows of its own noise; not of what is wrong in every render alike.
+struct ErrorEstimate {
+    /// The mean over pixels and colour channels of variance / (value^2 + .01), the expected relMSE
+    /// against a picture without noise; infinite where a pixel has fewer than two samples.
+    double relative_variance = 0;
+    /// The variance over that of independent samples, as control tiles tell, and its standard
+    /// error.
+    VarianceFactor factor;
+};
+
+/// `image` has the channels of the film's pixel format; `variance`, where it is wanted, has as many
+/// and holds the estimated variance of each pixel's mean (of luminance: an upper bound).
 struct RenderResult {
     Image image;
     Image variance;
+    ErrorEstimate error; ///< where the variance is wanted
     RenderStats stats;
     bool interrupted = false;
 };

@@ -14,12 +14,12 @@
 /* "No primitive": as the ray's own primitive nothing is excluded, as a result nothing was hit. */
 #define BVH_NO_PRIM 0xffffffffu
 /* Coordinates beyond this are neither stored nor traversed, so that no product overflows. */
-#define BVH_COORDINATE_LIMIT 1e16f
+#define BVH_COORDINATE_LIMIT 0x1p53f
 /* Boxes are wider than their contents by this share of their largest coordinate; see bvh_ray.clh.
  */
 #define BVH_WIDEN CLR_EITHER(2.4e-7f, 4.5e-16)
 /* An empty child's box is turned inside out: from +this to -this. */
-#define BVH_EMPTY_BOUND 1e18f
+#define BVH_EMPTY_BOUND 0x1p60f
 
 /* The planes of a node's children in BvhNode::planes: lower x, y, z, then upper x, y, z. */
 #define BVH_PLANE_LOWER 0u

@@ -6,10 +6,12 @@
 
 CLR_PRECISION_BEGIN
 
-/* Samples are summed in blocks of this many, each from zero and in an order that depends on nothing
-   but the scene and the width of the kernel. A launch traces whole blocks, so the picture does not
-   depend on how many of them one launch takes. */
-#define CLR_BLOCK_SAMPLES 64
+/* The samples of a pixel are summed in blocks, each from zero and in an order that depends on
+   nothing but the scene and the width of the kernel; block b begins with sample CLR_BLOCK_START(b),
+   whatever the total: at 0, 16, 32, 64, and from there on every 64. Blocks are added as integers,
+   so neither the launches nor their order change a picture, and a picture of N samples is the first
+   N samples of any longer one, where a block ends at N. */
+#define CLR_BLOCK_START(b) ((b) < 3 ? (b)*16 : ((b)-2) * 64)
 
 /* The camera, the environment and the bounds of the loop. All directions are in world axes.
    A pixel position (x, y), in pixels from the corner of the whole film, looks along
@@ -51,9 +53,11 @@ typedef struct {
     uint sphere_blocks;
     clr_real final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
                               looks small */
-    clr_real
-        planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
-    clr_real lens_share;    /* of the offset on the lens that is left at the start of a ray */
+    int film_exponent;        /* the film's unit of colour is 2^film_exponent */
+    uint control_group;       /* tiles of which one is a control tile; 0: there are none */
+    uint pad2[2];
+    clr_real planar_rim; /* hits of planars up to these |a|, |b| or radius are not at the outline */
+    clr_real lens_share; /* of the offset on the lens that is left at the start of a ray */
     clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
     clr_real first_leg;     /* HAS_FAR_CAMERA: depth of the start, from the near clip plane */
     clr_real start_x[3];    /* a pixel's width there */
@@ -61,22 +65,41 @@ typedef struct {
     clr_real start_y[3];
     clr_real pad1;
 } FrameData;
-CLR_STATIC_SIZE(FrameData, CLR_EITHER(288, 528));
+CLR_STATIC_SIZE(FrameData, CLR_EITHER(304, 544));
 
 CLR_PRECISION_END
 
 CLR_SHARED_BEGIN
 
-/* Sums over the samples of a pixel, w being the filter's weight of a sample: of w R, w G, w B,
-   w alpha, w and w^2 (the last two of eight are unused), with the compensation of Kahan's
-   summation; and, for the variance, of w^2 R^2, w^2 G^2, w^2 B^2, w^2 alpha, w^2 R, w^2 G, w^2 B.
- */
+/* Sums over the samples of a pixel, exact: the value of each block of samples is cut off to a
+   multiple of a power of two, once, and added as an integer in two's complement, the lowest word
+   first. So sums over parts of the samples, of the picture or of the devices add up to the same
+   bits in any order.
+
+   `colour`: of w R, w G, w B, w alpha over the samples that reach the pixel, w being the filter's
+   weight. The lowest bit is worth 2^CLR_COLOUR_LSB units (FrameData::film_exponent; of alpha: 1).
+   `scatter`: over the samples that lie in the pixel, n in a block: of n / (n - 1) times the squared
+   distances of R, G, B, alpha from their mean in the block, so that the quotient by `samples` is
+   the variance of one sample. Where the filter is sampled (FILTER 1), the distances are those of
+   the w R, w G, w B, w alpha from the w times the value of the block's first sample, from their
+   mean. The lowest bit is worth 2^CLR_SCATTER_LSB squared units.
+   `weight`: of w, of 64 bits, the lowest worth 2^CLR_WEIGHT_LSB.
+   `samples`: that lie in the pixel. `clamped`: blocks with a value beyond CLR_FILM_LIMIT (in units
+   of the highest word), which is put in its place: 2^28 blocks of that size do not overflow. */
+#define CLR_COLOUR_WORDS 4
+#define CLR_COLOUR_LSB (-76)
+#define CLR_SCATTER_WORDS 5
+#define CLR_SCATTER_LSB (-96)
+#define CLR_WEIGHT_LSB (-30)
+#define CLR_FILM_LIMIT 8
 typedef struct {
-    float sum[8];
-    float lost[8];
-    float moment[8];
+    uint colour[CLR_COLOUR_WORDS][4];
+    uint scatter[CLR_SCATTER_WORDS][4];
+    uint weight[2];
+    uint samples;
+    uint clamped;
 } FilmPixel;
-CLR_STATIC_SIZE(FilmPixel, 96);
+CLR_STATIC_SIZE(FilmPixel, 160);
 
 /* Tiles whose splats cannot meet have the same colour: even or odd column and row of the tile. */
 #define CLR_TILE_COLOURS 4

@@ -24,6 +24,7 @@
 
 #ifdef __OPENCL_C_VERSION__
 
+#define CLR_SHARED_INLINE static inline
 #define CLR_SHARED_BEGIN
 #define CLR_SHARED_END
 #define CLR_PRECISION_BEGIN
@@ -42,6 +43,8 @@ typedef uint clr_word;
 #else
 
 #include <cstdint>
+
+#define CLR_SHARED_INLINE inline
 
 /* What depends on the precision is compiled once for each, into a namespace of its own. */
 #if CLR_DOUBLE

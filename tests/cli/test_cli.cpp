@@ -47,7 +47,8 @@ TEST_CASE("The version and the help are printed") {
          {"--output",    "--device",        "--list-devices", "--spp",     "--resolution",
           "--max-depth", "--rr-depth",      "--seed",         "--lanes",   "-D",
           "--exposure",  "--pixel-centers", "--accel",        "--check",   "--stats",
-          "--profile",   "--quiet",         "--verbose",      "--version", "compare"})
+          "--profile",   "--quiet",         "--verbose",      "--version", "compare",
+          "--precision"})
         CHECK_THAT(help.out, Catch::Contains(option));
 }
 

@@ -139,6 +139,13 @@ TEST_CASE("Features that the kernel gets though the scene does not need them") {
     CHECK(accept({"scene.xml", "--generic", "all"}).generality.count("LIGHT_COUNT") == 1);
 }
 
+TEST_CASE("Double precision has one lane") {
+    CHECK_FALSE(accept({"scene.xml"}).double_precision);
+    CHECK_FALSE(accept({"scene.xml", "--precision", "single", "--lanes", "8"}).double_precision);
+    CHECK(accept({"scene.xml", "--precision", "double"}).double_precision);
+    CHECK(accept({"scene.xml", "--precision", "double", "--lanes", "1"}).double_precision);
+}
+
 TEST_CASE("The other commands") {
     CHECK(accept({"--list-devices"}).command == Command::list_devices);
     const Options compare = accept({"compare", "a.exr", "b.exr", "--tolerance", "1e-3"});
@@ -163,6 +170,8 @@ TEST_CASE("A mistake ends with exit code 2") {
         {},
         {"a.xml", "b.xml"},
         {"x.xml", "--unknown"},
+        {"x.xml", "--precision", "half"},
+        {"x.xml", "--precision", "double", "--lanes", "8"},
         {"x.xml", "-s"},
         {"x.xml", "-s", "0"},
         {"x.xml", "-s", "-1"},

@@ -34,6 +34,26 @@ Reading read_bytes(const std::string &bytes, const std::string &name = "a.exr", 
     return reading;
 }
 
+/// A film of one pixel with one sample.
+Film film_of(const glm::dvec4 &rgba) {
+    __extension__ using Bits = unsigned __int128;
+    FilmPixel pixel{};
+    for (int c = 0; c < 4; ++c) {
+        const auto sum =
+            static_cast<Bits>(std::ldexp(static_cast<long double>(rgba[c]), -CLR_COLOUR_LSB));
+        for (int word = 0; word < std::min<int>(4, std::size(pixel.colour)); ++word)
+            pixel.colour[word][c] = static_cast<uint>(sum >> (32 * word));
+    }
+    const auto weight = std::uint64_t{1} << static_cast<unsigned>(-CLR_WEIGHT_LSB);
+    pixel.weight[0] = static_cast<uint>(weight);
+    pixel.weight[1] = static_cast<uint>(weight >> 32U);
+    pixel.samples = 1;
+    Film film;
+    film.width = film.height = 1;
+    film.pixels = {pixel};
+    return film;
+}
+
 /// NaN fails.
 bool is_near(const std::vector<float> &values, const std::vector<double> &expected,
              double tolerance) {
@@ -323,19 +343,14 @@ TEST_CASE("colours outside of sRGB stay negative in a reflectance, not in a ligh
 }
 
 TEST_CASE("a film in XYZ is written as what it is, or as linear sRGB", "[image]") {
-    FilmPixel pixel{};
-    const double rgb[3] = {.8, .2, .1};
-    for (int c = 0; c < 3; ++c)
-        pixel.sum[c] = static_cast<float>(4 * rgb[c]);
-    pixel.sum[3] = pixel.sum[4] = 4;
-    const std::vector<FilmPixel> film{pixel};
+    const Film film = film_of({.8, .2, .1, 1});
     // IEC 61966-2-1, to four places.
     const std::vector<double> xyz{.4124 * .8 + .3576 * .2 + .1805 * .1,
                                   .2126 * .8 + .7152 * .2 + .0722 * .1,
                                   .0193 * .8 + .1192 * .2 + .9505 * .1};
     const test::ScratchFolder folder;
     for (const PixelFormat format : {PixelFormat::xyz, PixelFormat::xyza}) {
-        const Image image = film_mean(film, 1, 1, format);
+        const Image image = film_mean(film, format);
         CHECK(is_near({image.f32[0], image.f32[1], image.f32[2]}, xyz, 1e-3));
         const std::string messages = test::stderr_of([&] {
             for (const char *name : {"a.exr", "a.pfm", "a.hdr", "a.png"})
@@ -364,14 +379,10 @@ TEST_CASE("a film in XYZ is written as what it is, or as linear sRGB", "[image]"
 }
 
 TEST_CASE("a film of luminance is written as grey", "[image]") {
-    FilmPixel pixel{};
-    for (int c = 0; c < 3; ++c)
-        pixel.sum[c] = c == 1 ? 4 : 0;
-    pixel.sum[3] = 2;
-    pixel.sum[4] = 4;
+    const Film film = film_of({0, 1, 0, .5});
     const test::ScratchFolder folder;
     for (const PixelFormat format : {PixelFormat::luminance, PixelFormat::luminance_alpha}) {
-        const Image image = film_mean(std::vector<FilmPixel>{pixel}, 1, 1, format);
+        const Image image = film_mean(film, format);
         for (const char *name : {"a.exr", "a.pfm", "a.hdr"}) {
             write_image(folder.path(name), image);
             const Image back = read_image(folder.path(name));

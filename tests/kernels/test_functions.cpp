@@ -40,7 +40,84 @@ std::vector<float> run_probe(const ClTestDevice &device, const std::string &name
     return device.download<float>(out, size * count);
 }
 
+/// The same in double precision, with one lane.
+std::vector<double> run_double_probe(const ClTestDevice &device, const std::string &name,
+                                     const std::vector<double> &records, std::size_t count,
+                                     std::size_t size) {
+    const cl::Program program = device.build(
+        "probes/function_probes.cl", "-DLANES=1 -DDOUBLE_PRECISION=1", embedded_kernel_sources());
+    cl::Kernel kernel(program, name.c_str());
+    const cl::Buffer in = device.upload<double>(records);
+    const cl::Buffer out = device.allocate(size * count * sizeof(double));
+    kernel.setArg(0, in);
+    kernel.setArg(1, out);
+    kernel.setArg(2, static_cast<cl_uint>(count));
+    device.run(kernel, count, 1);
+    return device.download<double>(out, size * count);
+}
+
+/// The largest of the differences, infinite where one is not a number.
+class Worst {
+public:
+    void add(long double difference) {
+        const auto size = static_cast<double>(std::abs(difference));
+        worst_ = size <= worst_ ? worst_ : size >= 0 ? size : INFINITY;
+    }
+    [[nodiscard]] double value() const { return worst_; }
+
+private:
+    double worst_ = 0;
+};
+
 } // namespace
+
+TEST_CASE("in double precision the functions are right to a few units in the last place",
+          "[oclgrind]") {
+    const ClTestDevice device;
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> uniform;
+    std::normal_distribution<double> gauss;
+    const std::size_t count = small_tests() ? 50 : 20000;
+    constexpr long double two_pi = 2 * std::numbers::pi_v<long double>;
+    std::vector<double> turns, vectors, squares, normals;
+    for (std::size_t i = 0; i < count; ++i) {
+        turns.push_back(uniform(random));
+        vectors.insert(vectors.end(), {gauss(random), gauss(random) * (i % 2 == 0 ? 1 : 1e-4)});
+        const double distance2 = std::exp(uniform(random) * 40 - 20);
+        squares.insert(squares.end(), {distance2, distance2 * uniform(random) * 0.99});
+        const glm::dvec3 n =
+            glm::normalize(glm::dvec3(gauss(random), gauss(random), gauss(random)));
+        normals.insert(normals.end(), {n.x, n.y, n.z});
+    }
+
+    Worst sincos, turn, cap, frame;
+    const std::vector<double> sines = run_double_probe(device, "probe_sincos", turns, count, 2);
+    const std::vector<double> angles = run_double_probe(device, "probe_turn", vectors, count, 1);
+    const std::vector<double> caps =
+        run_double_probe(device, "probe_sphere_cap", squares, count, 1);
+    const std::vector<double> frames = run_double_probe(device, "probe_frame", normals, count, 6);
+    for (std::size_t i = 0; i < count; ++i) {
+        const long double angle = two_pi * turns[i];
+        sincos.add(std::sin(angle) - sines[2 * i]);
+        sincos.add(std::cos(angle) - sines[2 * i + 1]);
+        turn.add(std::atan2(static_cast<long double>(vectors[2 * i]),
+                            static_cast<long double>(vectors[2 * i + 1])) /
+                     two_pi -
+                 angles[i]);
+        const long double sine2 = static_cast<long double>(squares[2 * i + 1]) / squares[2 * i];
+        cap.add(caps[i] / (1 - std::sqrt(1 - sine2)) - 1);
+        const glm::dvec3 n(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+        const double *f = &frames[6 * i];
+        const glm::dvec3 s(f[0], f[1], f[2]), t(f[3], f[4], f[5]);
+        for (const double off : {glm::dot(s, s) - 1, glm::dot(t, t) - 1, glm::dot(s, t),
+                                 glm::dot(s, n), glm::dot(t, n)})
+            frame.add(off);
+    }
+    CHECK(sincos.value() < 4e-16);
+    CHECK(turn.value() < 2e-16);
+    CHECK(cap.value() < 1e-14); // of d^2 - r^2, down to a hundredth
+    CHECK(frame.value() < 1e-15);
+}
 
 TEST_CASE("sine and cosine of a turn are right to 7e-7", "[oclgrind]") {
     const ClTestDevice device;

@@ -14,6 +14,7 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.spp = how.spp > 0 ? how.spp : scene.sample_count;
     options.seed = how.seed;
     options.lanes = how.lanes;
+    options.double_precision = how.double_precision;
     options.pixel_centers = how.pixel_centers;
     options.independent_sampler = !how.sobol;
     options.light_samples = how.light_samples;
@@ -21,6 +22,7 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.generality = how.generality;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;
+    options.with_variance = true;
     RenderResult result = render_scene(scene, options);
     MeasuredImage measured{std::move(result.image), std::move(result.variance), {}};
     measured.mean_se = standard_error_of_mean(measured.variance, scene.film.filter);

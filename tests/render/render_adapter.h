@@ -17,6 +17,7 @@ struct TestRender {
     int spp = 0; ///< 0: the scene's own sample_count
     std::uint32_t seed = 1;
     int lanes = 0; ///< 0: as wide as the device
+    bool double_precision = false;
     bool pixel_centers = false;
     int batch_blocks = 0;                  ///< as in RenderOptions
     int tile_items = 0;                    ///< as in RenderOptions

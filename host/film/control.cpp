@@ -1,0 +1,107 @@
+#include "control.h"
+
+#include "film_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace clrender {
+
+namespace {
+
+/// Pixels of control tiles: as many for a figure to a tenth, where some pixels are noisier than
+/// others; and the share of all pixels where that is more.
+constexpr std::size_t least_pixels = 1024;
+constexpr std::size_t tiles_per_control_tile = 100;
+
+/// As relMSE: keeps dark pixels from ruling the relative error.
+constexpr double epsilon = 0.01;
+
+std::size_t colour_channels(const Image &image) {
+    return image.channels <= 2 ? 1 : 3;
+}
+
+/// The weight of a squared error in the value of a pixel.
+double weight_of(const Image &image, std::size_t pixel, std::size_t channel) {
+    const std::size_t i = pixel * static_cast<std::size_t>(image.channels) +
+                          std::min(channel, colour_channels(image) - 1);
+    const double value = image.f32[i];
+    return 1 / (value * value + epsilon);
+}
+
+/// Squared differences in a control tile, and what scatter makes expect of them.
+struct Squares {
+    double measured = 0, expected = 0;
+};
+
+Squares squares_of_tile(const ControlLayout &layout, std::size_t tile, const ControlPixel *pixels,
+                        const Image &image, const FilmUnits &units) {
+    Squares sum;
+    const std::size_t left = tile % layout.columns() * layout.side;
+    const std::size_t top = tile / layout.columns() * layout.side;
+    for (std::size_t y = 0; y < std::min(layout.side, layout.height - top); ++y)
+        for (std::size_t x = 0; x < std::min(layout.side, layout.width - left); ++x) {
+            const ControlPixel &pixel = pixels[y * layout.side + x];
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double weight = weight_of(image, (top + y) * layout.width + left + x, c);
+                const double difference = units.difference(pixel, static_cast<int>(c));
+                sum.measured += weight * difference * difference;
+                // The scatter is the sum of the first rendering; the difference has the noise of
+                // two.
+                sum.expected += 2 * weight * units.scatter(pixel, static_cast<int>(c));
+            }
+        }
+    return sum;
+}
+
+} // namespace
+
+std::size_t choose_control_group(const ControlLayout &layout) {
+    const std::size_t least_tiles =
+        (least_pixels + layout.side * layout.side - 1) / (layout.side * layout.side);
+    const std::size_t wanted = std::max(least_tiles, layout.tiles() / tiles_per_control_tile);
+    return std::max<std::size_t>((layout.tiles() + wanted - 1) / wanted, 1);
+}
+
+VarianceFactor variance_factor(const ControlLayout &layout, std::span<const ControlPixel> pixels,
+                               const Image &image, int film_exponent) {
+    const FilmUnits units(film_exponent);
+    std::vector<Squares> tiles;
+    Squares sum;
+    for (std::size_t i = 0; i < layout.count(); ++i) {
+        const std::size_t tile =
+            clr_control_tile(static_cast<uint>(i), static_cast<uint>(layout.group),
+                             static_cast<uint>(layout.tiles()));
+        const ControlPixel *first = pixels.data() + i * layout.side * layout.side;
+        tiles.push_back(squares_of_tile(layout, tile, first, image, units));
+        sum.measured += tiles.back().measured;
+        sum.expected += tiles.back().expected;
+    }
+    VarianceFactor factor;
+    if (!(sum.expected > 0))
+        return factor;
+    factor.value = sum.measured / sum.expected;
+    // Of a ratio of sums over tiles, to first order.
+    double squares = 0;
+    for (const Squares &tile : tiles) {
+        const double rest = tile.measured - factor.value * tile.expected;
+        squares += rest * rest;
+    }
+    const auto count = static_cast<double>(tiles.size());
+    factor.error = std::sqrt(squares * count / std::max(count - 1, 1.0)) / sum.expected;
+    return factor;
+}
+
+double mean_relative_variance(const Image &image, const Image &variance) {
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t colours = colour_channels(image);
+    const std::size_t pixels = image.f32.size() / channels;
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels; ++i)
+        for (std::size_t c = 0; c < colours; ++c)
+            sum += weight_of(image, i, c) * double{variance.f32[i * channels + c]};
+    return pixels > 0 ? sum / static_cast<double>(pixels * colours) : 0;
+}
+
+} // namespace clrender
