@@ -23,6 +23,9 @@ class InputError : public std::runtime_error {
 public:
     InputError(const SourceLocation &where, const std::string &what)
         : std::runtime_error(where.str() + ": " + what) {}
+
+    /// Several faults, each a line as above.
+    explicit InputError(const std::string &lines) : std::runtime_error(lines) {}
 };
 
 /// No usable device, or the device failed: exit code 3.

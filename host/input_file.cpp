@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <new>
@@ -52,6 +54,13 @@ void InputFile::fail(const std::string &reason) const {
     if (referrer_.file.empty())
         throw InputError({path_, 0}, reason);
     throw InputError(referrer_, path_ + ": " + reason);
+}
+
+std::string quoted_path(const std::string &path) {
+    std::string result = path;
+    std::replace_if(
+        result.begin(), result.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+    return '"' + result + '"';
 }
 
 std::string read_input_file(const std::string &path, const SourceLocation &referrer) {

@@ -34,6 +34,9 @@ private:
     std::uint64_t size_ = 0;
 };
 
+/// `path` in quotes, at its full length, without control characters: for messages.
+std::string quoted_path(const std::string &path);
+
 /// The whole content of a regular file. Throws InputError as InputFile does.
 std::string read_input_file(const std::string &path, const SourceLocation &referrer = {});
 

@@ -91,7 +91,7 @@ std::map<std::string, std::string> metadata(const cli::Options &options, const S
 int render_command(const cli::Options &options) {
     Profile profile;
     const auto start = profile.origin;
-    Scene scene = load_scene(options.scene, {options.defines});
+    Scene scene = load_scene(options.scene, {options.defines, options.check});
     apply_options(options, scene);
     cli::RunTimes times;
     times.parse = seconds_since(start);

@@ -1,5 +1,6 @@
 #include "film.h"
 
+#include "../image/color.h"
 #include "film_sums.h"
 
 #include <algorithm>
@@ -13,21 +14,24 @@ namespace {
 
 /// Rows of the matrix from linear sRGB to the colour channels of a format (Rec. 709 to CIE XYZ).
 std::vector<Rgb> colour_rows(PixelFormat format) {
-    const Rgb x{0.412453, 0.357580, 0.180423};
-    const Rgb y{0.212671, 0.715160, 0.072169};
-    const Rgb z{0.019334, 0.119193, 0.950227};
+    const glm::dmat3 rows = glm::transpose(srgb_to_xyz());
     switch (format) {
     case PixelFormat::luminance:
     case PixelFormat::luminance_alpha:
-        return {y};
+        return {rows[1]};
     case PixelFormat::xyz:
     case PixelFormat::xyza:
-        return {x, y, z};
+        return {rows[0], rows[1], rows[2]};
     case PixelFormat::rgb:
     case PixelFormat::rgba:
         break;
     }
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+}
+
+ColorSpace color_space(PixelFormat format) {
+    return format == PixelFormat::xyz || format == PixelFormat::xyza ? ColorSpace::xyz
+                                                                     : ColorSpace::srgb;
 }
 
 bool has_alpha(PixelFormat format) {
@@ -116,12 +120,14 @@ Image film_mean(const Film &film, PixelFormat format) {
     const FilmUnits units(film.exponent);
     for (const FilmPixel &pixel : film.pixels)
         means.push_back(mean(PixelSums(pixel, units)));
-    return make_image(
+    Image image = make_image(
         film.width, film.height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
             return Rgb{means[i][0], means[i][1], means[i][2]};
         },
         [&](std::size_t i) { return means[i][alpha]; });
+    image.color_space = color_space(format);
+    return image;
 }
 
 Image film_variance(const Film &film, PixelFormat format) {
@@ -144,6 +150,7 @@ Image film_variance(const Film &film, PixelFormat format) {
         [&](std::size_t i) { return deviation(i, alpha); });
     for (float &value : image.f32)
         value *= value;
+    image.color_space = color_space(format);
     return image;
 }
 

@@ -1,6 +1,5 @@
 #include "flatten_parts.h"
 #include "light_tree.h"
-#include "log.h"
 
 #include <algorithm>
 #include <bit>
@@ -334,9 +333,6 @@ void flatten_lights(Flattening &work) {
             break;
         }
     }
-    if (work.scene.emitters.empty() && work.scene.integrator.kind != IntegratorKind::depth)
-        log::warn("the scene has no light: the picture will be black");
-
     if (flat.config.ENVIRONMENT == 2)
         flat.frame.env_probability =
             static_cast<clr_real>(environment_share(list.extents, map_power));

@@ -39,8 +39,8 @@ struct StbFree {
     throw FormatError(std::string("cannot be decoded (") + (reason ? reason : "unknown") + ")");
 }
 
-/// 16-bit values: colours are decoded from sRGB, alpha is linear.
-void decode_16bit(const stbi_us *pixels, std::size_t count, Image &image) {
+/// 16-bit values: colours are decoded from sRGB unless they are raw, alpha is linear.
+void decode_16bit(const stbi_us *pixels, std::size_t count, bool raw, Image &image) {
     image.type = PixelType::f32;
     image.f32.resize(count);
     const auto channels = static_cast<std::size_t>(image.channels);
@@ -48,13 +48,13 @@ void decode_16bit(const stbi_us *pixels, std::size_t count, Image &image) {
     for (std::size_t i = 0; i < count; ++i) {
         const double value = pixels[i] / 65535.0;
         const bool is_alpha = has_alpha && i % channels == channels - 1;
-        image.f32[i] = static_cast<float>(is_alpha ? value : srgb_decode(value));
+        image.f32[i] = static_cast<float>(raw || is_alpha ? value : srgb_decode(value));
     }
 }
 
 } // namespace
 
-Image decode_8bit(std::string_view bytes) {
+Image decode_8bit(std::string_view bytes, bool raw) {
     if (bytes.size() > INT_MAX)
         throw FormatError("longer than 2 GiB");
     const double max_pixels_per_byte = check_complete(bytes);
@@ -81,7 +81,7 @@ Image decode_8bit(std::string_view bytes) {
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
                               static_cast<std::size_t>(image.channels);
     if (is_16bit) {
-        decode_16bit(static_cast<const stbi_us *>(pixels.get()), count, image);
+        decode_16bit(static_cast<const stbi_us *>(pixels.get()), count, raw, image);
     } else {
         const auto *first = static_cast<const stbi_uc *>(pixels.get());
         image.type = PixelType::u8;

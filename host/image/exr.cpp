@@ -1,3 +1,5 @@
+#include "color.h"
+#include "exr_channels.h"
 #include "formats.h"
 
 #include <ImfChannelList.h>
@@ -7,7 +9,10 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfVersion.h>
 
 #include <algorithm>
 #include <array>
@@ -142,38 +147,15 @@ private:
     std::uint64_t offset_ = 0;
 };
 
-/// The channels we take, in our order.
-std::vector<std::string> choose_channels(const Imf::ChannelList &channels) {
-    const auto has = [&](const char *name) { return channels.findChannel(name) != nullptr; };
-    std::vector<std::string> names;
-    if (has("R") && has("G") && has("B")) {
-        names = {"R", "G", "B"};
-    } else if (has("Y") && !has("RY") && !has("BY")) {
-        names = {"Y"};
-    } else {
-        std::string found;
-        for (auto it = channels.begin(); it != channels.end() && found.size() < 80; ++it)
-            found += std::string(found.empty() ? "" : ", ") + it.name();
-        throw FormatError("channels " + found + ", expected R, G, B or Y, with or without A");
-    }
-    if (has("A"))
-        names.emplace_back("A");
-    for (const std::string &name : names) {
-        const Imf::Channel &channel = channels[name];
-        if (channel.xSampling != 1 || channel.ySampling != 1)
-            throw FormatError("channel " + name + " is subsampled, expected one value per pixel");
-    }
-    return names;
-}
-
-std::vector<std::string> channel_names(const std::string &layer, int channels) {
-    constexpr std::array<const char *, 4> rgba = {"R", "G", "B", "A"};
-    constexpr std::array<const char *, 2> grey = {"Y", "A"};
-    std::vector<std::string> names;
-    for (int c = 0; c < channels; ++c) {
-        const auto i = static_cast<std::size_t>(c);
-        names.push_back((layer.empty() ? "" : layer + ".") + (channels <= 2 ? grey[i] : rgba[i]));
-    }
+std::vector<std::string> channel_names(const std::string &layer, const Image &image) {
+    std::vector<std::string> names = {"R", "G", "B", "A"};
+    if (image.channels <= 2)
+        names = {"Y", "A"};
+    else if (image.color_space == ColorSpace::xyz)
+        names = {"X", "Y", "Z", "A"};
+    names.resize(static_cast<std::size_t>(image.channels));
+    for (std::string &name : names)
+        name.insert(0, layer.empty() ? "" : layer + ".");
     return names;
 }
 
@@ -184,36 +166,112 @@ Imf::Slice slice(const float *pixels, const Imath::Box2i &window, int channels, 
     return Imf::Slice::Make(Imf::FLOAT, pixels + channel, window, x_stride, x_stride * columns);
 }
 
-Image decode(std::string_view bytes) {
-    check_extent(bytes);
-    MemoryInput stream(bytes);
-    Imf::InputFile file(stream, 0);
+/// The attribute of files whose three colours are X, Y and Z.
+Imf::Chromaticities xyz_chromaticities() {
+    return {{1, 0}, {0, 1}, {0, 0}, {1.0F / 3, 1.0F / 3}};
+}
+
+/// Reads the chosen channels one by one, whatever their types, as floats.
+void read_channels(Imf::InputFile &file, const std::vector<std::string> &names, Image &image) {
     const Imath::Box2i window = file.header().dataWindow();
-    const std::vector<std::string> names = choose_channels(file.header().channels());
-
-    Image image;
-    image.width = window.max.x - window.min.x + 1;
-    image.height = window.max.y - window.min.y + 1;
-    image.channels = static_cast<int>(names.size());
-    if (!file.isComplete())
-        throw FormatError("the file ends before its last pixel (truncated)");
-
-    image.f32.resize(static_cast<std::size_t>(image.width) *
-                     static_cast<std::size_t>(image.height) * names.size());
     Imf::FrameBuffer buffer;
     for (int c = 0; c < image.channels; ++c)
         buffer.insert(names[static_cast<std::size_t>(c)],
                       slice(image.f32.data(), window, image.channels, c));
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
+}
+
+/// Luma at every pixel, chroma at every second one: the library makes RGB of them, in half.
+void read_luma_chroma(std::string_view bytes, const std::string &layer, Image &image) {
+    MemoryInput stream(bytes);
+    Imf::RgbaInputFile file(stream, layer, 0);
+    const Imath::Box2i window = file.dataWindow();
+    const auto columns = static_cast<std::size_t>(image.width);
+    const auto channels = static_cast<std::size_t>(image.channels);
+    std::vector<Imf::Rgba> row(columns);
+    for (int y = 0; y < image.height; ++y) {
+        // A row stride of 0: every row is put into the same place.
+        file.setFrameBuffer(row.data() - window.min.x, 1, 0);
+        file.readPixels(window.min.y + y);
+        float *target = &image.f32[static_cast<std::size_t>(y) * columns * channels];
+        for (const Imf::Rgba &pixel : row) {
+            const std::array<float, 4> values = {pixel.r, pixel.g, pixel.b, pixel.a};
+            target = std::copy_n(values.begin(), channels, target);
+        }
+    }
+}
+
+/// Brings colours that are not linear sRGB there.
+void convert_colors(const Imf::Header &header, ExrColors colors, Image &image,
+                    std::vector<std::string> &remarks) {
+    if (colors == ExrColors::grey)
+        return;
+    if (colors == ExrColors::xyz) {
+        image.color_space = ColorSpace::xyz;
+        image = in_linear_srgb(std::move(image));
+        image.is_converted = true;
+        return;
+    }
+    if (!Imf::hasChromaticities(header))
+        return;
+    const Imf::Chromaticities &stated = Imf::chromaticities(header);
+    const auto xy = [](const Imath::V2f &v) { return glm::dvec2(v.x, v.y); };
+    const auto matrix =
+        to_srgb({xy(stated.red), xy(stated.green), xy(stated.blue), xy(stated.white)});
+    if (!matrix) {
+        remarks.emplace_back("its chromaticities span no colour space and are ignored");
+    } else if (*matrix != glm::dmat3(1)) {
+        transform_colors(image, *matrix);
+        image.is_converted = true;
+    }
+}
+
+void remark_on_layers(const ExrChannels &chosen, std::vector<std::string> &remarks) {
+    constexpr std::size_t shown = 6;
+    const std::vector<std::string> &others = chosen.other_layers;
+    if (others.empty())
+        return;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(others.size(), shown); ++i)
+        list += (i == 0 ? "" : ", ") + (others[i].empty() ? "(none)" : others[i]);
+    if (others.size() > shown)
+        list += ", and " + std::to_string(others.size() - shown) + " more";
+    remarks.push_back("layer " + chosen.layer + " is read, these are not: " + list);
+}
+
+Image decode(std::string_view bytes, std::vector<std::string> &remarks) {
+    check_extent(bytes);
+    MemoryInput stream(bytes);
+    Imf::InputFile file(stream, 0);
+    const Imath::Box2i window = file.header().dataWindow();
+    const ExrChannels chosen = choose_exr_channels(file.header().channels());
+    remark_on_layers(chosen, remarks);
+    if (Imf::isMultiPart(file.version()))
+        remarks.emplace_back("of its parts the first one is read");
+
+    Image image;
+    image.width = window.max.x - window.min.x + 1;
+    image.height = window.max.y - window.min.y + 1;
+    image.channels = static_cast<int>(chosen.names.size());
+    if (!file.isComplete())
+        throw FormatError("the file ends before its last pixel (truncated)");
+
+    image.f32.resize(static_cast<std::size_t>(image.width) *
+                     static_cast<std::size_t>(image.height) * chosen.names.size());
+    if (chosen.colors == ExrColors::luma_chroma)
+        read_luma_chroma(bytes, chosen.layer, image);
+    else
+        read_channels(file, chosen.names, image);
+    convert_colors(file.header(), chosen.colors, image, remarks);
     return image;
 }
 
 } // namespace
 
-Image decode_exr(std::string_view bytes) {
+Image decode_exr(std::string_view bytes, std::vector<std::string> &remarks) {
     try {
-        return decode(bytes);
+        return decode(bytes, remarks);
     } catch (const FormatError &) {
         throw;
     } catch (const std::exception &error) {
@@ -230,12 +288,14 @@ std::string encode_exr(const Image &image, const std::map<std::string, std::stri
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const auto &[name, value] : metadata)
         header.insert(name, Imf::StringAttribute(value));
+    if (image.color_space == ColorSpace::xyz)
+        Imf::addChromaticities(header, xyz_chromaticities());
 
     Imf::FrameBuffer buffer;
     for (const ImageLayer &layer : layers) {
         if (layer.image->width != image.width || layer.image->height != image.height)
             throw FormatError("layer " + layer.name + " has another size than the image");
-        const auto names = channel_names(layer.name, layer.image->channels);
+        const auto names = channel_names(layer.name, *layer.image);
         for (std::size_t c = 0; c < names.size(); ++c) {
             header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
             buffer.insert(names[c], slice(layer.image->f32.data(), header.dataWindow(),

@@ -32,14 +32,15 @@ void check_jpeg_complete(std::string_view bytes);
 void check_bmp_complete(std::string_view bytes);
 void check_tga_complete(std::string_view bytes);
 
-/// PNG, JPEG, BMP and TGA, by content. 8 bits stay; 16 bits are decoded from sRGB to f32.
-Image decode_8bit(std::string_view bytes);
+/// PNG, JPEG, BMP and TGA, by content. 8 bits stay; 16 bits become f32, from sRGB unless `raw`.
+Image decode_8bit(std::string_view bytes, bool raw);
 /// Radiance RGBE, run-length encoded or flat, top row first.
 Image decode_hdr(std::string_view bytes);
 /// Portable float map, both byte orders, times the absolute value of its scale.
 Image decode_pfm(std::string_view bytes);
-/// OpenEXR: R G B [A] or Y [A] of the first part, over the data window.
-Image decode_exr(std::string_view bytes);
+/// OpenEXR: the first part over the data window, in linear sRGB or grey. Adds to `remarks` what
+/// else the person should know of the file.
+Image decode_exr(std::string_view bytes, std::vector<std::string> &remarks);
 
 /// `image` as a file in memory. 8-bit formats: sRGB, clamped, times 2^exposure.
 std::string encode_png(const Image &image, double exposure);

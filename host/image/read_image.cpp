@@ -1,4 +1,5 @@
 #include "../input_file.h"
+#include "../log.h"
 #include "formats.h"
 #include "image.h"
 
@@ -12,42 +13,49 @@ namespace clrender {
 
 namespace {
 
-Image decode(std::string_view bytes, const std::string &path) {
+Image decode(std::string_view bytes, const std::string &path, bool raw,
+             std::vector<std::string> &remarks) {
     using namespace image_format;
     if (bytes.empty())
         throw FormatError("the file is empty, expected an image");
     if (bytes.starts_with("\x76\x2f\x31\x01"))
-        return decode_exr(bytes);
+        return decode_exr(bytes, remarks);
     if (bytes.starts_with("#?"))
         return decode_hdr(bytes);
     if (bytes.size() > 2 && (bytes.starts_with("PF") || bytes.starts_with("Pf")) &&
         std::isspace(static_cast<unsigned char>(bytes[2])) != 0)
         return decode_pfm(bytes);
     if (bytes.starts_with("\x89PNG") || bytes.starts_with("\xFF\xD8") || bytes.starts_with("BM"))
-        return decode_8bit(bytes);
+        return decode_8bit(bytes, raw);
 
     // TGA has no signature.
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".tga")
-        return decode_8bit(bytes);
+        return decode_8bit(bytes, raw);
     throw FormatError("unknown format, expected PNG, JPEG, TGA, BMP, HDR, EXR or PFM");
 }
 
 } // namespace
 
-Image read_image(const std::string &path, const SourceLocation &referrer) {
+Image read_image(const std::string &path, const SourceLocation &referrer, bool raw) {
     const std::string bytes = read_input_file(path, referrer);
+    const bool is_named = !referrer.file.empty();
     std::string reason;
     try {
-        return decode(bytes, path);
+        std::vector<std::string> remarks;
+        Image image = decode(bytes, path, raw, remarks);
+        for (const std::string &remark : remarks)
+            log::warn(is_named ? referrer : SourceLocation{path, 0},
+                      is_named ? path + ": " + remark : remark);
+        return image;
     } catch (const image_format::FormatError &error) {
         reason = error.what();
     } catch (const std::bad_alloc &) {
         reason = "does not fit into memory";
     }
-    if (referrer.file.empty())
+    if (!is_named)
         throw InputError({path, 0}, reason);
     throw InputError(referrer, path + ": " + reason);
 }

@@ -1,3 +1,5 @@
+#include "../log.h"
+#include "color.h"
 #include "formats.h"
 #include "image.h"
 
@@ -159,6 +161,8 @@ std::string encode(const std::string &extension, const Image &image, double expo
                    const std::map<std::string, std::string> &metadata,
                    const std::vector<ImageLayer> &extra_layers) {
     using namespace image_format;
+    if (image.color_space == ColorSpace::xyz && extension != ".exr")
+        return encode(extension, in_linear_srgb(image), exposure, metadata, extra_layers);
     if (extension == ".png")
         return encode_png(image, exposure);
     if (extension == ".jpg" || extension == ".jpeg")
@@ -179,9 +183,13 @@ void write_image(const std::string &path, const Image &image, double exposure,
         throw InputError({path, 0}, "unknown extension, expected .png, .jpg, .hdr, .exr or .pfm");
     if (image.type != PixelType::f32 || image.f32.empty())
         throw InputError({path, 0}, "no linear pixels to write");
+    const std::string extension = lower_extension(path);
+    if (image.color_space == ColorSpace::xyz && (extension == ".hdr" || extension == ".pfm"))
+        log::warn({path, 0}, "the XYZ of the film is written as linear sRGB, as only .exr can say "
+                             "that it holds XYZ");
     std::string bytes;
     try {
-        bytes = encode(lower_extension(path), image, exposure, metadata, extra_layers);
+        bytes = encode(extension, image, exposure, metadata, extra_layers);
     } catch (const std::exception &error) {
         throw InputError({path, 0}, std::string("cannot be encoded (") + error.what() + ")");
     }

@@ -35,7 +35,7 @@ void FileReads::add(std::function<void()> read) {
     reads_.push_back(std::move(read));
 }
 
-void FileReads::run() {
+void FileReads::run(bool all_faults) {
     const auto reads = std::exchange(reads_, {});
     std::vector<Outcome> outcomes(reads.size());
     std::atomic<std::size_t> failed{reads.size()}; // what follows a failure need not be read
@@ -45,17 +45,27 @@ void FileReads::run() {
             for (std::size_t i = range.begin(); i < range.end() && i < failed; ++i) {
                 outcomes[i] = outcome_of(reads[i]);
                 std::size_t before = failed;
-                while (outcomes[i].failure && i < before &&
+                while (!all_faults && outcomes[i].failure && i < before &&
                        !failed.compare_exchange_weak(before, i)) {
                 }
             }
         },
         tbb::simple_partitioner());
+    std::string faults;
     for (const Outcome &outcome : outcomes) {
         log::pass_on(outcome.messages);
-        if (outcome.failure)
+        if (!outcome.failure)
+            continue;
+        try {
             std::rethrow_exception(outcome.failure);
+        } catch (const InputError &error) {
+            if (!all_faults)
+                throw;
+            faults.append(faults.empty() ? "" : "\n").append(error.what());
+        }
     }
+    if (!faults.empty())
+        throw InputError(faults);
 }
 
 } // namespace clrender

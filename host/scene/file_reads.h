@@ -12,8 +12,9 @@ public:
     void add(std::function<void()> read);
 
     /// Runs what has been added since. Messages come in the order of `add`, up to those of the
-    /// first read that fails; what that one has thrown is thrown here.
-    void run();
+    /// first read that fails; what that one has thrown is thrown here. With `all_faults` none is
+    /// left out, and the InputErrors are thrown as one.
+    void run(bool all_faults = false);
 
 private:
     std::vector<std::function<void()>> reads_;

@@ -11,6 +11,7 @@ namespace clrender {
 /// What the command line may change while a scene is read.
 struct LoadOptions {
     std::map<std::string, std::string> defines; ///< -D name=value
+    bool all_faults = false; ///< goes on behind the first fault of a scene, and throws all in one
 };
 
 /// Reads a Mitsuba XML scene, or a bare .obj / .ply model (given a framing camera and a soft

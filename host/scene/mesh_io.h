@@ -21,13 +21,20 @@ struct ObjPart {
 
 /// What an MTL file says of a material, as far as we render it.
 struct ObjMaterial {
-    std::string name;
+    std::string name; ///< words with one blank in between
     Rgb diffuse{0.5};
-    std::string diffuse_map; ///< path, resolved against the MTL's folder; "" if none
-    Rgb specular{0.0}, emission{0.0}, transmittance{0.0};
+    std::string diffuse_map;   ///< path of a file that is there; "" if none
+    SourceLocation where_map;  ///< the line that names it
+    glm::dmat3 map_to_uv{1.0}; ///< as Texture::to_uv
+    bool is_map_clamped = false;
+    Rgb specular{0.0}, emission{0.0};
     double ior = 1.5, dissolve = 1;
     int illum = 2;
 };
+
+/// The one kind of surface that a material is rendered as.
+enum class ObjSurface { diffuse, mirror, glass };
+ObjSurface surface_of(const ObjMaterial &material);
 
 struct ObjFile {
     std::vector<ObjPart> parts;
@@ -35,7 +42,7 @@ struct ObjFile {
 };
 
 /// All triangles of an OBJ file as one mesh, as Mitsuba's `obj` reads it (materials ignored,
-/// polygons as fans, normals as Mitsuba gives them). Errors name `path` and the line, or
+/// polygons cut into triangles, normals as Mitsuba gives them). Errors name `path` and the line, or
 /// `referrer` if the file cannot be opened. Throws InputError.
 Mesh read_obj_mesh(const std::string &path, const MeshReadOptions &options,
                    const SourceLocation &referrer = {});

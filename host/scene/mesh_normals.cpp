@@ -49,11 +49,12 @@ std::vector<glm::vec3> smooth_normals(const Mesh &mesh) {
 }
 
 void complete_normals(Mesh &mesh) {
-    if (mesh.normals.empty()) {
+    const auto is_missing = [](const glm::vec3 &n) { return n == glm::vec3(0.0F); };
+    if (std::all_of(mesh.normals.begin(), mesh.normals.end(), is_missing)) {
         mesh.normals = smooth_normals(mesh);
+        mesh.has_computed_normals = true;
         return;
     }
-    const auto is_missing = [](const glm::vec3 &n) { return n == glm::vec3(0.0F); };
     if (std::none_of(mesh.normals.begin(), mesh.normals.end(), is_missing))
         return;
     const std::vector<glm::vec3> smooth = smooth_normals(mesh);

@@ -12,7 +12,8 @@ namespace clrender {
 std::vector<glm::vec3> smooth_normals(const Mesh &mesh);
 
 /// Gives `mesh` the normals that Mitsuba gives it. Where `normals` is empty, or has a zero vector
-/// (the file states none or one without a direction), the smooth ones are filled in.
+/// (the file states none or one without a direction), the smooth ones are filled in; the mesh notes
+/// whether it has no others.
 void complete_normals(Mesh &mesh);
 
 } // namespace clrender

@@ -1,10 +1,11 @@
 /// OBJ files, through tinyobjloader: it parses the numbers of lines that have been checked, we
-/// resolve and check the indices, join equal corners and cut polygons into fans.
+/// resolve and check the indices, join equal corners and cut polygons into triangles.
 
 #include "../log.h"
 #include "mesh_io.h"
 #include "mesh_mtl.h"
 #include "mesh_normals.h"
+#include "mesh_polygons.h"
 #include "obj_lines.h"
 
 #define TINYOBJLOADER_USE_DOUBLE
@@ -17,7 +18,10 @@
 #include <climits>
 #include <filesystem>
 #include <istream>
+#include <iterator>
+#include <set>
 #include <unordered_map>
+#include <utility>
 
 namespace clrender {
 
@@ -53,10 +57,12 @@ public:
     /// Reads the file to its end. Throws InputError.
     void read();
 
+    [[nodiscard]] std::string folder() const { return folder_.string(); }
+
     Mesh mesh;                          ///< normals may be zero vectors: none stated
-    std::vector<int> triangle_material; ///< per triangle: index into material_names, or none
-    std::vector<std::string> material_names;
-    std::vector<std::pair<std::string, SourceLocation>> libraries; ///< MTL files and who names them
+    std::vector<int> triangle_material; ///< per triangle: index into materials, or none
+    std::vector<std::pair<std::string, SourceLocation>> materials; ///< names and where first used
+    std::vector<std::pair<std::string, SourceLocation>> libraries; ///< mtllib: names, and where
 
 private:
     std::string filter(std::string &line);
@@ -73,6 +79,9 @@ private:
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
     std::unordered_map<std::string, int> material_indices_;
     int material_ = none;
+    bool has_surfaces_ = false;
+    std::vector<std::uint32_t> face_; ///< the vertices of the face at hand
+    MeshPolygons polygons_{mesh};
 };
 
 void ObjBuilder::read() {
@@ -102,6 +111,7 @@ void ObjBuilder::read() {
     tinyobj::LoadObjWithCallback(stream, callbacks, this, nullptr, &warning, &error);
     if (mesh.triangles.empty())
         throw InputError({lines_.where().file, 0}, "no faces, expected at least one f line");
+    polygons_.finish();
 
     // Mitsuba gives coordinates to every vertex as soon as the file has any.
     if (uvs_.empty())
@@ -112,20 +122,23 @@ void ObjBuilder::read() {
 
 std::string ObjBuilder::filter(std::string &line) {
     // Materials are followed here, because their names may contain blanks.
-    const std::size_t begin = line.find_first_not_of(" \t");
-    const std::string_view keyword = std::string_view(line).substr(begin, 6);
-    if (keyword != "usemtl" && keyword != "mtllib")
+    const std::string_view text = line;
+    const std::size_t begin = text.find_first_not_of(" \t");
+    const std::string_view keyword = text.substr(begin, text.find_first_of(" \t", begin) - begin);
+    const bool is_use = keyword == "usemtl";
+    if (keyword == "surf" && !std::exchange(has_surfaces_, true))
+        log::warn(lines_.where(), "curved surfaces (surf) are left out, expected polygons");
+    if (!is_use && keyword != "mtllib")
         return check_obj_line(line);
 
-    const std::size_t name_begin = std::min(line.find_first_not_of(" \t", begin + 6), line.size());
-    const std::string name = line.substr(name_begin, line.find_last_not_of(" \t") + 1 - name_begin);
-    if (keyword == "mtllib" && !name.empty())
-        libraries.emplace_back((folder_ / name).string(), lines_.where());
-    if (keyword == "usemtl") {
+    const std::string name = joined_words(text.substr(begin + keyword.size()));
+    if (!is_use) {
+        libraries.emplace_back(name, lines_.where());
+    } else {
         const auto [entry, is_new] =
-            material_indices_.try_emplace(name, static_cast<int>(material_names.size()));
+            material_indices_.try_emplace(name, static_cast<int>(materials.size()));
         if (is_new)
-            material_names.push_back(name);
+            materials.emplace_back(name, lines_.where());
         material_ = entry->second;
     }
     line.clear();
@@ -133,14 +146,11 @@ std::string ObjBuilder::filter(std::string &line) {
 }
 
 void ObjBuilder::add_face(const tinyobj::index_t *corners, int count) {
-    const std::uint32_t first = vertex(corners[0]);
-    std::uint32_t previous = vertex(corners[1]);
-    for (int i = 2; i < count; ++i) {
-        const std::uint32_t next = vertex(corners[i]);
-        mesh.triangles.push_back({first, previous, next});
-        triangle_material.push_back(material_);
-        previous = next;
-    }
+    face_.clear();
+    for (int i = 0; i < count; ++i)
+        face_.push_back(vertex(corners[i]));
+    polygons_.add(face_, lines_.where());
+    triangle_material.resize(mesh.triangles.size(), material_);
 }
 
 std::uint32_t ObjBuilder::vertex(const tinyobj::index_t &index) {
@@ -171,6 +181,23 @@ int ObjBuilder::resolve(int index, std::size_t count, const char *what) const {
                                      "number read so far), or its negative",
                                      what, index, size));
     return static_cast<int>(resolved);
+}
+
+/// Says which materials no library has.
+void warn_of_unknown(const std::vector<std::pair<std::string, SourceLocation>> &used,
+                     const std::vector<ObjMaterial> &known) {
+    std::set<std::string> names{""}; // "usemtl" alone: none
+    for (const ObjMaterial &material : known)
+        names.insert(material.name);
+    std::vector<std::pair<std::string, SourceLocation>> unknown;
+    std::copy_if(used.begin(), used.end(), std::back_inserter(unknown),
+                 [&](const auto &material) { return names.count(material.first) == 0; });
+    if (unknown.empty())
+        return;
+    const std::string more =
+        unknown.size() > 1 ? fmt::format(" (and {} more)", unknown.size() - 1) : "";
+    log::warn(unknown[0].second, "the material " + clrender::quoted(unknown[0].first) + more +
+                                     " is in no mtllib: plain grey is used");
 }
 
 /// The triangles `selected` of `mesh` with the vertices that they use. `new_index` is scratch
@@ -219,19 +246,20 @@ ObjFile read_obj_file(const std::string &path) {
 
     // A missing material file costs the colours, not the picture.
     ObjFile file;
-    for (const auto &[library, where] : builder.libraries) {
-        std::error_code ignored;
-        if (!std::filesystem::is_regular_file(library, ignored)) {
-            log::warn(where, library + " is not a file; its materials are left out");
-            continue;
-        }
-        for (ObjMaterial &material : read_mtl(library, where))
-            file.materials.push_back(std::move(material));
+    bool all_found = true;
+    for (const auto &[names, where] : builder.libraries) {
+        const auto paths = find_libraries(builder.folder(), names, where);
+        all_found = all_found && !paths.empty();
+        for (const std::string &library : paths)
+            for (ObjMaterial &material : read_mtl(library, where))
+                file.materials.push_back(std::move(material));
     }
+    if (all_found)
+        warn_of_unknown(builder.materials, file.materials);
 
     // One part for each material, in the order of their first `usemtl`, after the unnamed triangles
     // (material none = -1, which the unsigned sum below takes to 0).
-    std::vector<std::vector<std::uint32_t>> triangles_of(builder.material_names.size() + 1);
+    std::vector<std::vector<std::uint32_t>> triangles_of(builder.materials.size() + 1);
     for (std::size_t t = 0; t < builder.triangle_material.size(); ++t)
         triangles_of[static_cast<std::size_t>(builder.triangle_material[t]) + 1].push_back(
             static_cast<std::uint32_t>(t));
@@ -239,7 +267,7 @@ ObjFile read_obj_file(const std::string &path) {
     for (std::size_t m = 0; m < triangles_of.size(); ++m)
         if (!triangles_of[m].empty())
             file.parts.push_back(
-                {m == 0 ? "" : builder.material_names[m - 1],
+                {m == 0 ? "" : builder.materials[m - 1].first,
                  extract(builder.mesh, triangles_of[m], new_index, static_cast<int>(m))});
     return file;
 }

@@ -2,8 +2,10 @@
 /// normal or coordinates or a face's indices is passed over.
 
 #include "../input_file.h"
+#include "../log.h"
 #include "mesh_io.h"
 #include "mesh_normals.h"
+#include "mesh_polygons.h"
 #include "obj_lines.h"
 #include "ply_header.h"
 
@@ -17,6 +19,8 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <optional>
+#include <span>
 
 namespace clrender {
 
@@ -27,7 +31,8 @@ class PlyValues {
 public:
     PlyValues(std::string_view bytes, const PlyHeader &header, const std::string &path)
         : next_(bytes.data() + header.body_offset), end_(bytes.data() + bytes.size()),
-          format_(header.format), path_(path), line_(header.body_line) {}
+          format_(header.format), line_end_(header.line_end), path_(path), line_(header.body_line) {
+    }
 
     double number(PlyType type) {
         return format_ == PlyFormat::ascii ? text_number() : binary_number(type);
@@ -43,9 +48,11 @@ public:
         return static_cast<std::uint64_t>(length);
     }
 
-    [[noreturn]] void fail(const std::string &reason) const {
-        throw InputError({path_, format_ == PlyFormat::ascii ? line_ : 0}, reason);
+    /// The place of the value that was read last.
+    [[nodiscard]] SourceLocation where() const {
+        return {path_, format_ == PlyFormat::ascii ? line_ : 0};
     }
+    [[noreturn]] void fail(const std::string &reason) const { throw InputError(where(), reason); }
 
 private:
     double text_number();
@@ -54,6 +61,7 @@ private:
 
     const char *next_, *end_;
     PlyFormat format_;
+    char line_end_;
     std::string path_;
     int line_;
 };
@@ -61,7 +69,7 @@ private:
 double PlyValues::text_number() {
     const auto is_blank = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
     while (next_ != end_ && is_blank(*next_)) {
-        if (*next_ == '\n' && line_ < std::numeric_limits<int>::max())
+        if (*next_ == line_end_ && line_ < std::numeric_limits<int>::max())
             ++line_;
         ++next_;
     }
@@ -120,14 +128,39 @@ enum Slot : std::size_t { x, y, z, nx, ny, nz, u, v, slot_count };
 /// Per property: its slot, or slot_count if it is passed over.
 std::vector<std::size_t> vertex_slots(const PlyElement &element) {
     static const std::map<std::string_view, std::size_t> names = {
-        {"x", x}, {"y", y}, {"z", z}, {"nx", nx}, {"ny", ny},       {"nz", nz},
-        {"u", u}, {"v", v}, {"s", u}, {"t", v},   {"texture_u", u}, {"texture_v", v}};
+        {"x", x},         {"y", y},         {"z", z},         {"nx", nx},      {"ny", ny},
+        {"nz", nz},       {"u", u},         {"v", v},         {"s", u},        {"t", v},
+        {"texture_u", u}, {"texture_v", v}, {"texture_s", u}, {"texture_t", v}};
     std::vector<std::size_t> slots;
     for (const PlyProperty &property : element.properties) {
         const auto found = names.find(property.name);
         slots.push_back(found == names.end() || property.is_list ? slot_count : found->second);
     }
     return slots;
+}
+
+/// Says which normals and coordinates a file has in a form that is not read.
+void warn_of_unread(const PlyHeader &header, const std::string &path) {
+    for (const PlyElement &element : header.elements) {
+        const auto has = [&](std::string_view name) {
+            return std::any_of(element.properties.begin(), element.properties.end(),
+                               [&](const PlyProperty &p) { return p.name == name; });
+        };
+        const SourceLocation where{path, element.line};
+        if (element.name == "face" && has("texcoord"))
+            log::warn(where, "the coordinates of the faces' corners (\"texcoord\") are ignored, "
+                             "expected u and v of the vertices");
+        if (element.name != "vertex")
+            continue;
+        const auto count = [&](std::initializer_list<std::string_view> names) {
+            return std::count_if(names.begin(), names.end(), has);
+        };
+        if (const auto found = count({"nx", "ny", "nz"}); found != 0 && found != 3)
+            log::warn(where, "normals without all of nx, ny and nz are ignored");
+        if (count({"u", "s", "texture_u", "texture_s"}) !=
+            count({"v", "t", "texture_v", "texture_t"}))
+            log::warn(where, "coordinates without both of u and v (or s and t) are ignored");
+    }
 }
 
 void skip(const PlyProperty &property, PlyValues &values) {
@@ -177,47 +210,154 @@ void read_vertices(const PlyElement &element, const std::string &path, PlyValues
     }
 }
 
-std::uint32_t read_index(const PlyProperty &property, std::uint64_t vertex_count,
-                         PlyValues &values) {
-    const double index = values.number(property.type);
+std::uint32_t check_index(double index, std::uint64_t vertex_count, const PlyValues &values) {
     if (!(index >= 0 && index < static_cast<double>(vertex_count)) || index != std::floor(index))
         values.fail(fmt::format("vertex index {}, expected an integer from 0 to {}", index,
                                 static_cast<std::int64_t>(vertex_count) - 1));
     return static_cast<std::uint32_t>(index);
 }
 
-void read_faces(const PlyElement &element, const std::string &path, std::uint64_t vertex_count,
-                PlyValues &values, Mesh &mesh) {
-    const auto is_indices = [](const PlyProperty &p) {
-        return p.is_list && (p.name == "vertex_index" || p.name == "vertex_indices");
-    };
-    if (std::count_if(element.properties.begin(), element.properties.end(), is_indices) != 1)
+std::uint32_t read_index(const PlyProperty &property, std::uint64_t vertex_count,
+                         PlyValues &values) {
+    return check_index(values.number(property.type), vertex_count, values);
+}
+
+/// The next index of a strip, or nothing where the strip ends: -1, which types without sign hold
+/// as their largest value.
+std::optional<std::uint32_t> read_strip_index(const PlyProperty &property,
+                                              std::uint64_t vertex_count, PlyValues &values) {
+    const double index = values.number(property.type);
+    const bool is_end = index == -1 || (property.type == PlyType::uint8 && index == 0xff) ||
+                        (property.type == PlyType::uint16 && index == 0xffff) ||
+                        (property.type == PlyType::uint32 && index == 0xffffffff);
+    if (is_end)
+        return std::nullopt;
+    return check_index(index, vertex_count, values);
+}
+
+/// Takes the polygons and strips of a file to the triangles of its mesh.
+class PlyFaces {
+public:
+    PlyFaces(Mesh &mesh, std::uint64_t vertex_count)
+        : mesh_(mesh), vertex_count_(vertex_count), polygons_(mesh) {}
+
+    void read_polygons(const PlyElement &element, const std::string &path, PlyValues &values);
+    void read_strips(const PlyElement &element, const std::string &path, PlyValues &values);
+
+    /// To be called when all elements have been read.
+    void finish();
+
+private:
+    void add_polygon(const SourceLocation &where);
+    void add_strip();
+
+    Mesh &mesh_;
+    std::uint64_t vertex_count_;
+    MeshPolygons polygons_;
+    std::vector<std::uint32_t> face_; ///< the vertices of the polygon or strip at hand
+
+    /// Polygons that stand before the vertices, with which they can only be cut later.
+    std::vector<std::uint32_t> early_vertices_, early_sizes_;
+    SourceLocation early_where_;
+};
+
+/// The one list of indices that an element has.
+const PlyProperty &indices_of(const PlyElement &element, const std::string &path) {
+    const PlyProperty *found = nullptr;
+    for (const PlyProperty &property : element.properties) {
+        if (!property.is_list ||
+            (property.name != "vertex_index" && property.name != "vertex_indices"))
+            continue;
+        if (found != nullptr)
+            throw InputError({path, element.line},
+                             fmt::format("element {} with two lists of vertex_indices, "
+                                         "expected one",
+                                         quoted(element.name)));
+        found = &property;
+    }
+    if (found == nullptr)
         throw InputError({path, element.line},
-                         "faces without a list of vertex_indices (or with two)");
-    mesh.triangles.reserve(element.count);
+                         fmt::format("element {} without a list of vertex_indices, expected one",
+                                     quoted(element.name)));
+    return *found;
+}
+
+void PlyFaces::read_polygons(const PlyElement &element, const std::string &path,
+                             PlyValues &values) {
+    const PlyProperty &indices = indices_of(element, path);
+    mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
         for (const PlyProperty &property : element.properties) {
-            if (!is_indices(property)) {
+            if (&property != &indices) {
                 skip(property, values);
                 continue;
             }
-
-            // A polygon is cut into a fan around its first vertex.
             const std::uint64_t corners = values.list_length(property);
             if (corners < 3)
                 values.fail(
                     fmt::format("face {} with {} vertices, expected at least 3", i, corners));
-            const std::uint32_t first = read_index(property, vertex_count, values);
-            std::uint32_t previous = read_index(property, vertex_count, values);
-            for (std::uint64_t corner = 2; corner < corners; ++corner) {
-                const std::uint32_t next = read_index(property, vertex_count, values);
-                mesh.triangles.push_back({first, previous, next});
-                previous = next;
-            }
+            face_.clear();
+            for (std::uint64_t corner = 0; corner < corners; ++corner)
+                face_.push_back(read_index(property, vertex_count_, values));
+            add_polygon(values.where());
         }
     }
 }
 
+void PlyFaces::add_polygon(const SourceLocation &where) {
+    if (mesh_.positions.size() == vertex_count_) {
+        polygons_.add(face_, where);
+        return;
+    }
+    early_vertices_.insert(early_vertices_.end(), face_.begin(), face_.end());
+    early_sizes_.push_back(static_cast<std::uint32_t>(face_.size()));
+    early_where_ = {where.file, 0};
+}
+
+void PlyFaces::read_strips(const PlyElement &element, const std::string &path, PlyValues &values) {
+    const PlyProperty &indices = indices_of(element, path);
+    for (std::uint64_t i = 0; i < element.count; ++i)
+        for (const PlyProperty &property : element.properties) {
+            if (&property != &indices) {
+                skip(property, values);
+                continue;
+            }
+
+            // An index of -1 ends a strip and begins the next one.
+            face_.clear();
+            for (std::uint64_t left = values.list_length(property); left > 0; --left) {
+                if (const auto vertex = read_strip_index(property, vertex_count_, values))
+                    face_.push_back(*vertex);
+                else
+                    add_strip();
+            }
+            add_strip();
+        }
+}
+
+/// Every second triangle of a strip is turned over; those with a repeated vertex only lead on.
+void PlyFaces::add_strip() {
+    for (std::size_t i = 2; i < face_.size(); ++i) {
+        std::array<std::uint32_t, 3> t{face_[i - 2], face_[i - 1], face_[i]};
+        if (i % 2 == 1)
+            std::swap(t[0], t[1]);
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+            mesh_.triangles.push_back(t);
+    }
+    face_.clear();
+}
+
+void PlyFaces::finish() {
+    const std::span<const std::uint32_t> all = early_vertices_;
+    std::size_t begin = 0;
+    for (const std::uint32_t size : early_sizes_) {
+        polygons_.add(all.subspan(begin, size), early_where_);
+        begin += size;
+    }
+    polygons_.finish();
+}
+
+/// The element of that name, or nullptr.
 const PlyElement *find_element(const PlyHeader &header, std::string_view name,
                                const std::string &path) {
     const PlyElement *found = nullptr;
@@ -228,9 +368,6 @@ const PlyElement *find_element(const PlyHeader &header, std::string_view name,
             throw InputError({path, element.line}, "a second element " + element.name);
         found = &element;
     }
-    if (found == nullptr || found->count == 0)
-        throw InputError({path, found ? found->line : 0},
-                         fmt::format("no elements {}, expected a mesh of triangles", quoted(name)));
     return found;
 }
 
@@ -242,20 +379,37 @@ Mesh read_ply_mesh(const std::string &path, const MeshReadOptions &options,
     const PlyHeader header = parse_ply_header(bytes, path);
     const PlyElement *vertices = find_element(header, "vertex", path);
     const PlyElement *faces = find_element(header, "face", path);
+    const PlyElement *strips = find_element(header, "tristrips", path);
+    if (vertices == nullptr || vertices->count == 0)
+        throw InputError({path, vertices ? vertices->line : 0},
+                         "no elements 'vertex', expected a mesh of triangles");
+    const bool has_faces = faces != nullptr && faces->count > 0;
+    const bool has_strips = strips != nullptr && strips->count > 0;
+    if (!has_faces && !has_strips)
+        throw InputError({path, faces ? faces->line : 0},
+                         "no elements 'face', expected a mesh of triangles");
+
+    warn_of_unread(header, path);
 
     // The elements follow in the order of the header.
     Mesh mesh;
+    PlyFaces all_faces(mesh, vertices->count);
     PlyValues values(bytes, header, path);
     for (const PlyElement &element : header.elements) {
         if (&element == vertices)
             read_vertices(element, path, values, mesh);
-        else if (&element == faces)
-            read_faces(element, path, vertices->count, values, mesh);
+        else if (&element == faces && has_faces)
+            all_faces.read_polygons(element, path, values);
+        else if (&element == strips && has_strips)
+            all_faces.read_strips(element, path, values);
         else
             for (std::uint64_t i = 0; i < element.count; ++i)
                 for (const PlyProperty &property : element.properties)
                     skip(property, values);
     }
+    all_faces.finish();
+    if (mesh.triangles.empty())
+        throw InputError({path, 0}, "no strip with three vertices, expected a mesh of triangles");
 
     if (options.flip_tex_coords)
         for (glm::vec2 &uv : mesh.uvs)

@@ -1,5 +1,6 @@
 #include "mitsuba_document.h"
 
+#include "../input_file.h"
 #include "../log.h"
 #include "mitsuba_parameters.h"
 #include "mitsuba_text.h"
@@ -88,15 +89,15 @@ void check_version(pugi::xml_node root, const XmlFile &xml) {
         throw InputError(where, "version is " + in_quotes(version) + ", expected \"3.0.0\"");
     if (major == "0" || major == "1")
         throw InputError(where, "version " + in_quotes(version) +
-                                    " is the format of Mitsuba 0.6, expected \"3.0.0\" (with "
-                                    "names such as to_world instead of toWorld)");
+                                    " is older than Mitsuba 2, where names were changed (toWorld "
+                                    "to to_world, for one), expected \"3.0.0\" and today's names");
     if (major != "2" && major != "3")
         throw InputError(where, "version is " + in_quotes(version) + ", expected \"3.0.0\"");
 }
 
 void DocumentReader::check_include(const std::string &path, const SourceLocation &referrer) const {
     if (contains(open_files_, path))
-        throw InputError(referrer, "the file includes itself by way of " + in_quotes(path) +
+        throw InputError(referrer, "the file includes itself by way of " + quoted_path(path) +
                                        ", expected includes without a cycle");
     if (open_files_.size() >= max_include_depth)
         throw InputError(referrer, "includes nested too deep, expected at most " +
@@ -380,7 +381,7 @@ void DocumentReader::read_path(pugi::xml_node node, const Place &place) {
             return;
         }
     throw InputError(place.xml.where(node),
-                     "<path> " + in_quotes(value.string()) + " not found, expected a folder");
+                     "<path> " + quoted_path(value.string()) + " not found, expected a folder");
 }
 
 void DocumentReader::resolve_references() {
@@ -396,7 +397,8 @@ void DocumentReader::resolve_references() {
             if (target == ids_.end())
                 throw InputError(document_.where(parent, child.line),
                                  "<ref> to the unknown id " + in_quotes(child.ref_id) + ", " +
-                                     expected_one_of(child.ref_id, known));
+                                     (known.empty() ? "but no object of the scene has an id"
+                                                    : expected_one_of(child.ref_id, known)));
             child.object = target->second;
         }
 }
@@ -425,10 +427,10 @@ std::string find_file(const SourceFile &file, const std::string &name,
         if (!std::filesystem::exists(status) || name.empty())
             continue;
         if (!std::filesystem::is_regular_file(status))
-            throw InputError(where, in_quotes(name) + " is not a regular file, expected one");
+            throw InputError(where, quoted_path(name) + " is not a regular file, expected one");
         return candidate.string();
     }
-    throw InputError(where, "the file " + in_quotes(name) +
+    throw InputError(where, "the file " + quoted_path(name) +
                                 " does not exist, expected one, relative to the scene's folder");
 }
 

@@ -75,7 +75,8 @@ void SceneReader::read_envmap(Properties &properties, Emitter &emitter) {
         properties.fail("scale", "is negative, expected no number below 0");
     emitter.to_world = properties.transform("to_world");
     properties.ignore({"mis_compensation"});
-    emitter.bitmap = files_.image(properties.file("filename"), properties.where("filename"));
+    emitter.bitmap =
+        files_.image(properties.file("filename"), properties.where("filename"), {.is_light = true});
     files_.then([properties, image = emitter.bitmap] {
         if (image->width < 2 || image->height < 3)
             properties.fail("filename", fmt::format("has {}x{} pixels, expected at least 2x3",

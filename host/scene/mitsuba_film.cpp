@@ -82,15 +82,18 @@ void SceneReader::read_film(int object) {
     film.pixel_format = static_cast<PixelFormat>(
         properties.choice("pixel_format", static_cast<std::size_t>(PixelFormat::rgb),
                           {"luminance", "luminance_alpha", "rgb", "rgba", "xyz", "xyza"}));
-    if (properties.boolean("sample_border", false))
-        throw UnsupportedError(properties.where("sample_border"),
-                               properties.description() +
-                                   ": \"sample_border\" is not supported, expected \"false\"");
+
+    // One option under its name of today and its older one.
+    for (const char *name : {"sample_border", "high_quality_edges"})
+        if (properties.boolean(name, false))
+            throw UnsupportedError(properties.where(name),
+                                   properties.description() + ": " + in_quotes(name) +
+                                       " is not supported, expected \"false\"");
 
     // How the picture is stored is the command line's choice.
     properties.choice("file_format", 0, {"openexr", "exr", "rgbe", "pfm"});
     properties.choice("component_format", 0, {"float16", "float32", "uint32"});
-    properties.ignore({"banner", "compensate", "attach_log", "high_quality_edges"});
+    properties.ignore({"banner", "compensate", "attach_log"});
 
     const auto filters = properties.children("rfilter");
     if (filters.size() > 1)

@@ -3,6 +3,9 @@
 #include "../log.h"
 #include "mitsuba_text.h"
 
+#include <algorithm>
+#include <fmt/format.h>
+#include <sstream>
 #include <tbb/parallel_for.h>
 
 namespace clrender::mitsuba {
@@ -11,9 +14,9 @@ Scene SceneReader::read() {
     Properties root(document_, 0);
     read_shapes(root);
     read_scene_emitters(root);
-    read_files();
+    attempt([&] { read_files(); });
     read_view(root);
-    check_unused_bsdfs(root);
+    attempt([&] { check_unused_bsdfs(root); });
 
     // Definitions that others refer to have been read with those; here they mean nothing.
     root.children("texture");
@@ -22,9 +25,28 @@ Scene SceneReader::read() {
         for (const Child *child : root.children(tag))
             log::detail(document_.where(root.object(), child->line).str() + ": <" + tag +
                         "> outside of a sensor has no effect of its own");
-    root.finish();
+    attempt([&] { root.finish(); });
+    if (!faults_.empty())
+        throw InputError(fmt::format("{}", fmt::join(faults_, "\n")));
     warn_of_missing(root);
     return std::move(scene_);
+}
+
+/// Runs a step of reading; where all faults are asked for, notes what it throws.
+void SceneReader::attempt(const std::function<void()> &step) {
+    try {
+        step();
+    } catch (const InputError &error) {
+        if (!all_faults_)
+            throw;
+        open_bsdfs_.clear();
+
+        // Objects that are used twice fail twice.
+        std::istringstream lines(error.what());
+        for (std::string line; std::getline(lines, line);)
+            if (std::find(faults_.begin(), faults_.end(), line) == faults_.end())
+                faults_.push_back(line);
+    }
 }
 
 void SceneReader::warn_of_missing(Properties &root) const {
@@ -42,18 +64,18 @@ void SceneReader::read_shapes(Properties &root) {
     std::set<int> seen; // a <ref> to a shape of the scene adds nothing
     for (const Child *child : root.children("shape"))
         if (seen.insert(child->object).second)
-            read_shape(child->object);
+            attempt([&] { read_shape(child->object); });
 }
 
 void SceneReader::read_scene_emitters(Properties &root) {
     std::set<int> seen;
     for (const Child *child : root.children("emitter"))
         if (seen.insert(child->object).second)
-            read_emitter(child->object);
+            attempt([&] { read_emitter(child->object); });
 }
 
 void SceneReader::read_files() {
-    files_.read();
+    files_.read(all_faults_);
     tbb::parallel_for(std::size_t(0), shapes_from_files_.size(), [&](std::size_t i) {
         follow_transform(scene_.shapes[shapes_from_files_[i]]);
     });
@@ -61,21 +83,25 @@ void SceneReader::read_files() {
 
 void SceneReader::read_view(Properties &root) {
     const auto sensors = root.children("sensor");
-    if (sensors.empty())
-        place_default_sensor();
-    else
-        read_sensor(sensors[0]->object);
+    attempt([&] {
+        if (sensors.empty())
+            place_default_sensor();
+        else
+            read_sensor(sensors[0]->object);
+    });
     if (sensors.size() > 1)
         log::warn(document_.where(root.object(), sensors[1]->line),
                   "the scene has " + std::to_string(sensors.size()) +
                       " sensors: only the first one is used");
 
     const auto integrators = root.children("integrator");
-    if (integrators.size() > 1)
-        throw InputError(document_.where(root.object(), integrators[1]->line),
-                         "the scene has a second integrator, expected one");
-    if (!integrators.empty())
-        read_integrator(integrators[0]->object);
+    attempt([&] {
+        if (integrators.size() > 1)
+            throw InputError(document_.where(root.object(), integrators[1]->line),
+                             "the scene has a second integrator, expected one");
+        if (!integrators.empty())
+            read_integrator(integrators[0]->object);
+    });
 }
 
 void SceneReader::check_unused_bsdfs(Properties &root) {

@@ -7,23 +7,28 @@
 #include "scene_files.h"
 #include "spectrum.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace clrender::mitsuba {
 
 class SceneReader {
 public:
-    explicit SceneReader(const Document &document) : document_(document) {}
+    /// `all_faults`: what is wrong with one object does not keep the others from being read.
+    explicit SceneReader(const Document &document, bool all_faults = false)
+        : document_(document), all_faults_(all_faults) {}
 
-    /// Throws InputError.
+    /// Throws InputError, with a line for each fault if all are asked for.
     Scene read();
 
 private:
     // mitsuba_scene.cpp
+    void attempt(const std::function<void()> &step);
     void read_shapes(Properties &root);
     void read_scene_emitters(Properties &root);
     void read_files();
@@ -35,7 +40,7 @@ private:
     // mitsuba_textures.cpp; all return indices into Scene::textures
     int add_constant(const Rgb &value);
     int read_texture(int object, SpectrumUse use);
-    int read_bitmap(Properties &properties);
+    int read_bitmap(Properties &properties, SpectrumUse use);
     int read_checkerboard(Properties &properties);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     /// The colour or texture `name` of an object, or none.
@@ -71,9 +76,12 @@ private:
     void read_integrator(int object);
 
     const Document &document_;
+    bool all_faults_;
+    std::vector<std::string> faults_; ///< lines, each once
     Scene scene_;
-    bool load_images_ = true;             ///< off while objects that no shape uses are checked
-    std::map<int, int> bsdfs_, textures_; ///< by object
+    bool load_images_ = true;  ///< off while objects that no shape uses are checked
+    std::map<int, int> bsdfs_; ///< by object
+    std::map<std::pair<int, SpectrumUse>, int> textures_;
     std::map<double, int> default_bsdfs_; ///< by reflectance
     std::set<int> open_bsdfs_, area_emitters_;
     SceneFiles files_;

@@ -117,7 +117,7 @@ void follow_transform(Shape &shape) {
     const glm::dmat3 linear(shape.to_world);
     const Mesh &mesh = *shape.mesh;
     const bool keeps_normals = is_similarity(linear) && glm::determinant(linear) > 0;
-    if (keeps_normals || mesh.normals.empty() || mesh.normals != smooth_normals(mesh))
+    if (keeps_normals || !mesh.has_computed_normals)
         return;
 
     auto placed = std::make_shared<Mesh>(mesh);

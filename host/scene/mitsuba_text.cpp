@@ -33,18 +33,36 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last.back();
 }
 
-/// The candidate next to `name`, if it is near enough to be what was meant.
+/// True for another ending of the same word: "rotation" for "rotate".
+bool has_other_ending(const std::string &name, const std::string &candidate) {
+    constexpr std::size_t shortest_stem = 4;
+    constexpr std::size_t longest_ending = 3;
+    const auto stem = static_cast<std::size_t>(
+        std::mismatch(name.begin(), name.end(), candidate.begin(), candidate.end()).first -
+        name.begin());
+    return stem >= std::max(shortest_stem, candidate.size() - 1) &&
+           name.size() <= candidate.size() + longest_ending;
+}
+
+/// The candidate next to `name`, if `name` is likely to be a misspelling of it: an edit in four
+/// letters, or another ending. Those further off are other words: "roughconductor" is no
+/// misspelling of "conductor".
 std::optional<std::string> nearest(std::string_view name,
                                    const std::vector<std::string> &candidates) {
     constexpr std::size_t longest = 40;
+    constexpr std::size_t letters_an_edit = 4;
     if (name.size() > longest)
         return std::nullopt;
+    const std::string word = to_lower(std::string(name));
     std::optional<std::string> best;
-    std::size_t best_distance = std::max<std::size_t>(1, (name.size() + 1) / 3) + 1;
+    std::size_t best_distance = longest;
     for (const std::string &candidate : candidates) {
-        const std::size_t distance =
-            edit_distance(to_lower(std::string(name)), to_lower(candidate));
-        if (distance < best_distance) {
+        const std::string other = to_lower(candidate);
+        const std::size_t distance = edit_distance(word, other);
+        const std::size_t letters = std::min(word.size(), other.size());
+        const std::size_t limit = std::max<std::size_t>(1, letters / letters_an_edit);
+        const bool is_near = distance < letters && distance <= limit;
+        if (distance < best_distance && (is_near || has_other_ending(word, other))) {
             best = candidate;
             best_distance = distance;
         }
@@ -89,11 +107,14 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string expected_one_of(std::string_view name, const std::vector<std::string> &candidates) {
+    constexpr std::size_t shown = 40;
     if (candidates.empty())
         return "expected nothing of that kind";
     std::string result = "expected one of: ";
-    for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (std::size_t i = 0; i < std::min(candidates.size(), shown); ++i)
         result += (i > 0 ? ", " : "") + candidates[i];
+    if (candidates.size() > shown)
+        result += ", ... (" + std::to_string(candidates.size()) + " in all)";
     if (const auto meant = nearest(name, candidates))
         return "did you mean \"" + *meant + "\"? " + result;
     return result;

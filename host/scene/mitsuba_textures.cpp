@@ -96,13 +96,13 @@ Rgb SceneReader::read_constant(Properties &properties, const std::string &name, 
 }
 
 int SceneReader::read_texture(int object, SpectrumUse use) {
-    if (const auto known = textures_.find(object); known != textures_.end())
+    if (const auto known = textures_.find({object, use}); known != textures_.end())
         return known->second;
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
     int index = none;
     if (type == "bitmap")
-        index = read_bitmap(properties);
+        index = read_bitmap(properties, use);
     else if (type == "checkerboard")
         index = read_checkerboard(properties);
     else if (type == "uniform" || type == "srgb" || type == "d65")
@@ -110,11 +110,11 @@ int SceneReader::read_texture(int object, SpectrumUse use) {
     else
         fail_unsupported(document_, properties.object(), texture_types);
     properties.finish();
-    textures_[object] = index;
+    textures_[{object, use}] = index;
     return index;
 }
 
-int SceneReader::read_bitmap(Properties &properties) {
+int SceneReader::read_bitmap(Properties &properties, SpectrumUse use) {
     Texture texture;
     texture.kind = TextureKind::bitmap;
     texture.raw = properties.boolean("raw", false);
@@ -127,7 +127,8 @@ int SceneReader::read_bitmap(Properties &properties) {
     properties.ignore({"accel"});
     const std::string path = properties.file("filename");
     if (load_images_)
-        texture.bitmap = files_.image(path, properties.where("filename"));
+        texture.bitmap = files_.image(path, properties.where("filename"),
+                                      {texture.raw, use == SpectrumUse::emission});
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;
 }

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <utility>
+#include <vector>
 
 namespace clrender {
 
@@ -64,39 +66,50 @@ int add_diffuse(Scene &scene, int reflectance) {
     return add_bsdf(scene, twosided);
 }
 
-bool is_glass(const ObjMaterial &m) {
-    return m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9 || m.dissolve < 1;
-}
+/// Textures that may turn out not to be readable, and the colour that then takes their place.
+using TextureColors = std::vector<std::pair<int, Rgb>>;
 
-bool is_mirror(const ObjMaterial &m) {
-    const auto brightest = [](const Rgb &c) { return std::max({c.r, c.g, c.b}); };
-    const bool has_diffuse = brightest(m.diffuse) > 0.01 || !m.diffuse_map.empty();
-    return m.illum == 5 || (!has_diffuse && brightest(m.specular) > 0.5);
-}
-
-int add_material(Scene &scene, const ObjMaterial &material, SceneFiles &files) {
+int add_material(Scene &scene, const ObjMaterial &material, SceneFiles &files,
+                 TextureColors &colors) {
     const auto reflectance = [](const Rgb &c) { return glm::clamp(c, 0.0, 1.0); };
     Bsdf bsdf;
     bsdf.id = material.name;
-    if (is_glass(material)) {
+    switch (surface_of(material)) {
+    case ObjSurface::glass:
         bsdf.kind = BsdfKind::dielectric;
         bsdf.int_ior = material.ior > 1 ? material.ior : 1.5;
         bsdf.ext_ior = 1;
         return add_bsdf(scene, bsdf);
-    }
-    if (is_mirror(material)) {
+    case ObjSurface::mirror:
         bsdf.kind = BsdfKind::conductor;
         bsdf.specular_reflectance = add_color(scene, reflectance(material.specular));
         return add_bsdf(scene, bsdf);
+    case ObjSurface::diffuse:
+        break;
     }
     if (material.diffuse_map.empty())
         return add_diffuse(scene, add_color(scene, reflectance(material.diffuse)));
 
     Texture texture;
     texture.kind = TextureKind::bitmap;
-    texture.bitmap = files.image(material.diffuse_map);
+    texture.to_uv = material.map_to_uv;
+    texture.wrap = material.is_map_clamped ? TextureWrap::clamp : TextureWrap::repeat;
+    texture.bitmap = files.image(material.diffuse_map, material.where_map, {.is_optional = true});
     scene.textures.push_back(std::move(texture));
-    return add_diffuse(scene, static_cast<int>(scene.textures.size()) - 1);
+    const int index = static_cast<int>(scene.textures.size()) - 1;
+    colors.emplace_back(index, reflectance(material.diffuse));
+    return add_diffuse(scene, index);
+}
+
+/// Gives textures without a picture a plain colour.
+void replace_missing(Scene &scene, const TextureColors &colors) {
+    for (const auto &[index, color] : colors) {
+        Texture &texture = scene.textures[static_cast<std::size_t>(index)];
+        if (texture.bitmap->width > 0)
+            continue;
+        texture = Texture();
+        texture.value = color;
+    }
 }
 
 Shape &add_shape(Scene &scene, ShapeKind kind, const glm::dmat4 &to_world, int bsdf) {
@@ -127,6 +140,7 @@ glm::dmat4 look_along(const glm::dvec3 &origin, const glm::dvec3 &direction) {
 
 void add_model(Scene &scene, ObjFile &model) {
     SceneFiles files;
+    TextureColors colors;
     std::map<std::string, const ObjMaterial *> materials;
     for (const ObjMaterial &material : model.materials)
         materials.try_emplace(material.name, &material);
@@ -137,7 +151,7 @@ void add_model(Scene &scene, ObjFile &model) {
         const auto found = materials.find(part.material);
         const ObjMaterial *material = found == materials.end() ? nullptr : found->second;
         if (material != nullptr && bsdfs.count(part.material) == 0)
-            bsdfs[part.material] = add_material(scene, *material, files);
+            bsdfs[part.material] = add_material(scene, *material, files, colors);
         Shape &shape = add_shape(scene, ShapeKind::mesh, glm::dmat4(1.0),
                                  material ? bsdfs[part.material] : default_bsdf);
         shape.mesh = std::make_shared<const Mesh>(std::move(part.mesh));
@@ -147,6 +161,7 @@ void add_model(Scene &scene, ObjFile &model) {
             add_light(scene, glm::max(material->emission, 0.0));
     }
     files.read();
+    replace_missing(scene, colors);
 }
 
 void add_surroundings(Scene &scene, const Bounds &bounds) {

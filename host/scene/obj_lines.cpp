@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <climits>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <utility>
 
 namespace clrender {
 
@@ -77,8 +78,9 @@ ObjLines::int_type ObjLines::underflow() {
     return traits_type::to_int_type(line_[0]);
 }
 
-bool ObjLines::next_line() {
-    line_.clear();
+/// Appends the next line of the file, without its end; false at the end of the file. Lines end with
+/// a line feed, a carriage return, or both.
+bool ObjLines::append_line() {
     if (line_number_ < INT_MAX)
         ++line_number_;
     bool any = false;
@@ -89,38 +91,64 @@ bool ObjLines::next_line() {
             if (chunk_end_ == 0)
                 return any;
         }
+        const char *const begin = chunk_.data() + chunk_begin_;
+        const char *const end = chunk_.data() + chunk_end_;
+        if (std::exchange(after_return_, false) && *begin == '\n') {
+            ++chunk_begin_;
+            continue;
+        }
         any = true;
-        const char *begin = chunk_.data() + chunk_begin_;
-        const std::size_t left = chunk_end_ - chunk_begin_;
-        const auto *newline = static_cast<const char *>(std::memchr(begin, '\n', left));
-        const std::size_t count = newline ? static_cast<std::size_t>(newline - begin) : left;
-        line_.append(begin, count);
-        chunk_begin_ += count + (newline ? 1 : 0);
+        const char *const line_end =
+            std::find_if(begin, end, [](char c) { return c == '\n' || c == '\r'; });
+        line_.append(begin, line_end);
+        chunk_begin_ += static_cast<std::size_t>(line_end - begin) + (line_end != end ? 1 : 0);
         if (line_.size() > max_line_length)
             throw InputError(where(), "line longer than 1 MiB, expected a shorter one");
-        if (newline)
+        if (line_end != end) {
+            after_return_ = *line_end == '\r';
+            return true;
+        }
+    }
+}
+
+/// Reads a line with those that continue it: a backslash at the end stands for a blank.
+bool ObjLines::next_line() {
+    line_.clear();
+    first_number_ = line_number_ < INT_MAX ? line_number_ + 1 : INT_MAX;
+    if (!append_line())
+        return false;
+    if (line_number_ == 1 && line_.starts_with("\xEF\xBB\xBF"))
+        line_.erase(0, 3);
+    std::size_t begin = 0; // of the line that was appended last
+    while (true) {
+        erase_comment(begin);
+        const std::size_t last = line_.find_last_not_of(blanks);
+        if (last == std::string::npos || last < begin || line_[last] != '\\')
+            return true;
+        line_.resize(last);
+        line_ += ' ';
+        begin = line_.size();
+        if (!append_line())
             return true;
     }
 }
 
-void ObjLines::check_line() {
-    if (line_number_ == 1 && line_.starts_with("\xEF\xBB\xBF"))
-        line_.erase(0, 3);
-    if (line_.find('\0') != std::string::npos)
-        throw InputError(where(), "NUL byte, expected text");
-
-    // A comment begins at a # that begins a word: names may contain one.
-    for (std::size_t hash = line_.find('#'); hash != std::string::npos;
+/// A comment begins at a # that begins a word: names may contain one.
+void ObjLines::erase_comment(std::size_t begin) {
+    for (std::size_t hash = line_.find('#', begin); hash != std::string::npos;
          hash = line_.find('#', hash + 1)) {
         if (hash == 0 || blanks.find(line_[hash - 1]) != std::string_view::npos) {
             line_.erase(hash);
-            break;
+            return;
         }
     }
+}
 
-    // The parser takes a lone carriage return for the end of a line; we take it for a blank.
+void ObjLines::check_line() {
+    if (line_.find('\0') != std::string::npos)
+        throw InputError(where(), "NUL byte, expected text");
     for (char &c : line_)
-        if (c == '\r' || c == '\v' || c == '\f')
+        if (c == '\v' || c == '\f')
             c = ' ';
     if (line_.find_first_not_of(blanks) == std::string::npos) {
         line_.clear();
@@ -169,6 +197,13 @@ std::string check_obj_line(std::string &line) {
         return check_face(split_words(text));
     line.clear();
     return {};
+}
+
+std::string joined_words(std::string_view text) {
+    std::string joined;
+    for (const std::string_view word : split_words(text))
+        joined.append(joined.empty() ? "" : " ").append(word);
+    return joined;
 }
 
 std::string quoted(std::string_view word) {

@@ -21,14 +21,16 @@ public:
 
     ObjLines(const std::string &path, const SourceLocation &referrer, Filter filter);
 
-    /// The line that was handed out last.
-    [[nodiscard]] SourceLocation where() const { return {path_, line_number_}; }
+    /// The line that was handed out last; its first one, if it is continued.
+    [[nodiscard]] SourceLocation where() const { return {path_, first_number_}; }
 
 protected:
     int_type underflow() override;
 
 private:
     bool next_line();
+    bool append_line();
+    void erase_comment(std::size_t begin);
     void check_line();
 
     std::string path_;
@@ -37,11 +39,15 @@ private:
     std::vector<char> chunk_;
     std::size_t chunk_begin_ = 0, chunk_end_ = 0;
     std::string line_;
-    int line_number_ = 0;
+    int line_number_ = 0, first_number_ = 0;
+    bool after_return_ = false; ///< the last line has ended with a carriage return
 };
 
 /// The words of a line, separated by blanks.
 std::vector<std::string_view> split_words(std::string_view line);
+
+/// The words of a text with one blank between them: a name as it counts.
+std::string joined_words(std::string_view text);
 
 /// "" if `word` is a number that fits a 32-bit float, else what is wrong with it.
 std::string check_number(std::string_view word);

@@ -41,6 +41,12 @@ private:
 };
 
 PlyHeader HeaderParser::parse() {
+    // The first line tells how lines end; in the others, a lone carriage return or line feed behind
+    // such an end is data or part of a comment.
+    const std::size_t first_end = std::min(bytes_.find_first_of("\r\n"), bytes_.size());
+    const std::string_view rest = bytes_.substr(first_end);
+    if (rest.starts_with('\r') && !rest.starts_with("\r\n"))
+        header_.line_end = '\r';
     if (next_line() != "ply")
         fail("not a PLY file, expected 'ply' in the first line");
     bool has_format = false;
@@ -73,7 +79,7 @@ PlyHeader HeaderParser::parse() {
 std::string_view HeaderParser::next_line() {
     ++line_;
     const std::string_view rest = bytes_.substr(header_.body_offset);
-    const std::size_t end = rest.substr(0, max_header_line).find('\n');
+    const std::size_t end = rest.substr(0, max_header_line).find(header_.line_end);
     if (end == std::string_view::npos)
         fail(rest.size() > max_header_line ? "header line longer than 4096 bytes"
                                            : "the file ends within the header");

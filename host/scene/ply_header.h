@@ -32,6 +32,7 @@ struct PlyHeader {
     std::vector<PlyElement> elements;
     std::size_t body_offset = 0; ///< bytes
     int body_line = 0;           ///< number of the first line after the header
+    char line_end = '\n';        ///< the last byte of each line: line feed or carriage return
 };
 
 /// Bytes of one value in a binary file.

@@ -30,7 +30,7 @@ struct Texture {
     TextureKind kind = TextureKind::constant;
     Rgb value{0.5};                      ///< constant
     std::shared_ptr<const Image> bitmap; ///< bitmap; shared by all textures that name the same file
-    bool raw = false;                    ///< bitmap: u8 data are linear, not sRGB-encoded
+    bool raw = false; ///< bitmap: u8 data are linear, not sRGB-encoded (f32: always)
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard
@@ -59,6 +59,7 @@ struct Mesh {
     std::vector<glm::vec3> normals; ///< per vertex, unit length, or empty: flat
     std::vector<glm::vec2> uvs;     ///< per vertex, or empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    bool has_computed_normals = false; ///< the file states none: they are smooth_normals()
 };
 
 enum class ShapeKind { sphere, rectangle, disk, mesh };

@@ -2,6 +2,7 @@
 
 #include "../log.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/core.h>
@@ -11,28 +12,66 @@ namespace clrender {
 
 namespace {
 
-/// Refuses what is no number, which would spread over the whole picture, and takes what is negative
-/// for black, as filters that ring leave it behind.
-void check_values(Image &image, const std::string &path, const SourceLocation &referrer) {
-    const SourceLocation where = referrer.file.empty() ? SourceLocation{path, 0} : referrer;
-    const std::string subject = referrer.file.empty() ? "" : path + ": ";
+/// The largest finite value; 0 if there is none above.
+float largest_of(const std::vector<float> &values) {
+    float largest = 0;
+    for (const float value : values)
+        if (std::isfinite(value))
+            largest = std::max(largest, value);
+    return largest;
+}
+
+/// Values of one kind that a renderer cannot use.
+struct BadValues {
+    std::size_t count = 0;
+    std::size_t first = 0; ///< index of a value
+
+    void add(std::size_t i) {
+        if (count++ == 0)
+            first = i;
+    }
+};
+
+/// Replaces what would spread over the whole picture, and says so: infinite values by the largest
+/// finite one of the image, what is no number by 0. What is negative, as filters that ring leave it
+/// behind, counts as 0 unless `keeps_negative`; silently where it is as small as rounding errors.
+void repair_values(Image &image, const std::string &path, const SourceLocation &referrer,
+                   bool keeps_negative) {
     const auto channels = static_cast<std::size_t>(image.channels);
     const auto width = static_cast<std::size_t>(image.width);
-    std::size_t negative = 0;
+    const float largest = largest_of(image.f32);
+    const float rounding = 0x1p-20F * largest;
+    BadValues infinite;
+    BadValues undefined;
+    BadValues negative;
     for (std::size_t i = 0; i < image.f32.size(); ++i) {
         float &value = image.f32[i];
-        if (!std::isfinite(value)) {
-            const std::size_t pixel = i / channels;
-            throw InputError(where, fmt::format("{}pixel ({}, {}) is {}, expected finite values",
-                                                subject, pixel % width, pixel / width, value));
-        }
-        if (value < 0) {
-            value = 0;
-            ++negative;
-        }
+        if (std::isfinite(value) && (value >= 0 || keeps_negative))
+            continue;
+        if (std::isnan(value))
+            undefined.add(i);
+        else if (value > 0)
+            infinite.add(i);
+        else if (value < -rounding)
+            negative.add(i);
+        value = value > 0 ? largest : 0;
     }
-    if (negative > 0)
-        log::warn(where, fmt::format("{}{} negative values count as 0", subject, negative));
+
+    const bool is_named = !referrer.file.empty();
+    const auto say = [&](const BadValues &bad, const std::string &what) {
+        if (bad.count == 0)
+            return;
+        const std::size_t pixel = bad.first / channels;
+        const std::string count =
+            bad.count == 1 ? "1 value is" : fmt::format("{} values are", bad.count);
+        log::warn(is_named ? referrer : SourceLocation{path, 0},
+                  fmt::format("{}{} {} (pixel ({}, {}){})", is_named ? path + ": " : "", count,
+                              what, pixel % width, pixel / width,
+                              bad.count == 1 ? "" : " has the first"));
+    };
+    say(infinite, fmt::format("infinite, {} instead, the largest finite value", largest));
+    say(undefined, "not a number, 0 instead");
+    say(negative, "negative, 0 instead");
 }
 
 /// One of the ways to spell a path.
@@ -42,15 +81,28 @@ std::string normal(const std::string &path) {
 
 } // namespace
 
-std::shared_ptr<const Image> SceneFiles::image(const std::string &path,
-                                               const SourceLocation &where) {
-    std::shared_ptr<const Image> &known = images_[normal(path)];
+void SceneFiles::read_into(Image &image, const std::string &path, const SourceLocation &where,
+                           const ImageUse &use) {
+    try {
+        image = read_image(path, where, use.raw);
+        repair_values(image, path, where, image.is_converted && !use.is_light);
+    } catch (const InputError &error) {
+        if (!use.is_optional)
+            throw;
+        // The error begins with the place, as the warning does.
+        const std::string reason = error.what();
+        log::warn(where, reason.substr(std::min(where.str().size() + 2, reason.size())) +
+                             "; a plain colour is used");
+    }
+}
+
+std::shared_ptr<const Image> SceneFiles::image(const std::string &path, const SourceLocation &where,
+                                               const ImageUse &use) {
+    std::shared_ptr<const Image> &known =
+        images_[{normal(path), use.raw, use.is_light, use.is_optional}];
     if (!known) {
         const auto image = std::make_shared<Image>();
-        reads_.add([image, path, where] {
-            *image = read_image(path, where);
-            check_values(*image, path, where);
-        });
+        reads_.add([image, path, where, use] { read_into(*image, path, where, use); });
         known = image;
     }
     return known;
@@ -76,8 +128,8 @@ void SceneFiles::then(std::function<void()> check) {
     checks_.push_back(std::move(check));
 }
 
-void SceneFiles::read() {
-    reads_.run();
+void SceneFiles::read(bool all_faults) {
+    reads_.run(all_faults);
     for (const auto &check : std::exchange(checks_, {}))
         check();
 }

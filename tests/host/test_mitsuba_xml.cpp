@@ -277,14 +277,10 @@ TEST_CASE("pictures of scenes hold finite values, and none below zero") {
         return load_text(R"(<emitter type="envmap"><string name="filename" value=")" + pfm(value) +
                          R"("/></emitter>)");
     };
-    for (const float value :
-         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-        const std::string error = error_of([&] { load(value); });
-        INFO(error);
-        CHECK(error.find("pixel (2, 2)") != std::string::npos);
-        CHECK(error.find("expected finite values") != std::string::npos);
+    for (const auto &[value, instead] : {std::pair{std::numeric_limits<float>::quiet_NaN(), 0.0F},
+                                         {std::numeric_limits<float>::infinity(), 12.0F},
+                                         {-6.0F, 0.0F}}) {
+        const Scene scene = load(value);
+        CHECK(scene.emitters.at(0).bitmap->f32.at(8) == instead); // PFM: the bottom row comes first
     }
-    const Scene scene = load(-6);
-    const Image &image = *scene.emitters.at(0).bitmap;
-    CHECK(*std::min_element(image.f32.begin(), image.f32.end()) == 0.0f);
 }

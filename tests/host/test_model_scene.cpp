@@ -1,6 +1,7 @@
 #include "scene/model_scene.h"
 
 #include "files.h"
+#include "stderr_of.h"
 
 #include <catch2/catch.hpp>
 
@@ -78,7 +79,7 @@ TEST_CASE("textures of a model are read once, and checked", "[model]") {
         std::string bytes(3 * sizeof(float), '\0');
         for (std::size_t i = 0; i < 3; ++i)
             std::memcpy(&bytes[i * sizeof(float)], &value, sizeof(float));
-        return folder.file("t.pfm", "PF\n1 1\n-1\n" + bytes);
+        (void)folder.file("t.pfm", "PF\n1 1\n-1\n" + bytes);
     };
 
     write_texture(0.5F);
@@ -91,7 +92,7 @@ TEST_CASE("textures of a model are read once, and checked", "[model]") {
     CHECK(bitmaps[0] == bitmaps[1]);
     CHECK(bitmaps[0]->f32.at(0) == 0.5F);
 
-    const std::string bad = write_texture(std::numeric_limits<float>::quiet_NaN());
-    CHECK(test::error_of([&] { load_model(model); }) ==
-          bad + ": pixel (0, 0) is nan, expected finite values");
+    write_texture(std::numeric_limits<float>::quiet_NaN());
+    CHECK(test::stderr_of([&] { load_model(model); }).find("3 values are not a number") !=
+          std::string::npos);
 }
