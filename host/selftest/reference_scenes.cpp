@@ -81,6 +81,7 @@ struct Mean {
 /// The mean of the red channel and its standard error, all pixels being independent.
 Mean render_mean(const Scene &scene, RenderOptions how, int spp) {
     how.spp = spp;
+    how.with_variance = true;
     const RenderResult result = render_scene(scene, how);
     const auto channels = static_cast<std::size_t>(result.image.channels);
     double sum = 0, variance = 0;
