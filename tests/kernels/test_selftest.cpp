@@ -86,11 +86,11 @@ TEST_CASE("device functions: a wrong kernel fails the check of the function that
     }
 }
 
-TEST_CASE("device functions: small mathematics", "[oclgrind]") {
+TEST_CASE("device functions: small mathematics", "[oclgrind][stress]") {
     expect(check_math);
 }
 
-TEST_CASE("device functions: random numbers", "[oclgrind]") {
+TEST_CASE("device functions: random numbers", "[oclgrind][stress]") {
     expect(check_numbers);
 }
 
@@ -115,30 +115,30 @@ TEST_CASE("random numbers are the same at every width", "[oclgrind]") {
     }
 }
 
-TEST_CASE("device functions: spheres", "[oclgrind]") {
+TEST_CASE("device functions: spheres", "[oclgrind][stress]") {
     expect(check_spheres);
 }
 
-TEST_CASE("device functions: rectangles and disks", "[oclgrind]") {
+TEST_CASE("device functions: rectangles and disks", "[oclgrind][stress]") {
     expect(check_planars);
 }
 
-TEST_CASE("device functions: camera rays", "[oclgrind]") {
+TEST_CASE("device functions: camera rays", "[oclgrind][stress]") {
     expect(check_camera);
 }
 
-TEST_CASE("device functions: reconstruction filters", "[oclgrind]") {
+TEST_CASE("device functions: reconstruction filters", "[oclgrind][stress]") {
     expect(check_filters);
 }
 
-TEST_CASE("device functions: textures", "[oclgrind]") {
+TEST_CASE("device functions: textures", "[oclgrind][stress]") {
     expect(check_textures);
 }
 
-TEST_CASE("device functions: environment maps", "[oclgrind]") {
+TEST_CASE("device functions: environment maps", "[oclgrind][stress]") {
     expect(check_environment);
 }
 
-TEST_CASE("device functions: lights", "[oclgrind]") {
+TEST_CASE("device functions: lights", "[oclgrind][stress]") {
     expect(check_lights);
 }
