@@ -40,8 +40,10 @@ std::vector<float> math_inputs(std::size_t count) {
             n = glm::normalize(n * glm::dvec3(1, 1, 1e-4));
         for (int c = 0; c < 3; ++c)
             in.push_back(i < normals.size() ? normals[i][c] : static_cast<float>(n[c]));
-        in.push_back(static_cast<float>(std::exp(random.between(-15, 15))));
-        in.push_back(static_cast<float>(std::exp(random.between(-15, 15))));
+        // The first time neither way finds the direction.
+        const bool none = i == 0;
+        in.push_back(none ? 0 : static_cast<float>(std::exp(random.between(-15, 15))));
+        in.push_back(none ? 0 : static_cast<float>(std::exp(random.between(-15, 15))));
         in.push_back(random.unit());
         in.push_back(random.unit());
     }
@@ -76,9 +78,10 @@ Checks check_math(ProbeDevice &device) {
              {glm::dot(n, s), glm::dot(n, t), glm::dot(s, t), glm::length(s) - 1})
             frame.see(std::abs(error));
         const double ratio = a[9] / a[8];
-        weight.see(std::abs(b[10] * (1 + ratio * ratio) - 1));
+        weight.see(i == 0 ? b[10] : std::abs(b[10] * (1 + ratio * ratio) - 1));
         const double product = a[8] * a[9];
-        weight.see(std::abs(b[11] / a[8] * (1 + product * product) - 1));
+        if (i > 0)
+            weight.see(std::abs(b[11] / a[8] * (1 + product * product) - 1));
         const glm::dvec3 d(b[12], b[13], b[14]);
         cosine.see(std::abs(glm::length(d) - 1));
         cosine.see(std::abs(glm::dot(d, n) - b[15]));
