@@ -497,7 +497,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
                    ~ieq(material, int_of((int)CLR_NO_MATERIAL)) & gt(fabs(cosine), real_of(0.0f));
     p->alive = going | through | restarted;
     if (any_lane(going))
-        paths_scatter(scene, p, surface, hit.prim, material, cosine, going, through);
+        paths_scatter(scene, p, surface, hit.prim, material, cosine, going, through | restarted);
 #endif
 }
 
