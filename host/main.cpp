@@ -12,6 +12,7 @@
 #include "render/profile_trace.h"
 #include "render/render.h"
 #include "scene/load_scene.h"
+#include "selftest/self_test.h"
 
 #include <chrono>
 #include <exception>
@@ -130,6 +131,14 @@ int render_command(const cli::Options &options) {
     return result.interrupted ? exit_interrupted : 0;
 }
 
+int self_test_command(const cli::Options &options) {
+    RenderOptions how;
+    how.device = options.device;
+    how.lanes = options.lanes;
+    how.kernel_dir = options.kernel_dir;
+    return selftest::run_self_test(how) ? 0 : exit_device;
+}
+
 int run(const cli::Options &options) {
     if (options.quiet)
         log::set_level(log::Level::quiet);
@@ -140,6 +149,8 @@ int run(const cli::Options &options) {
         return show_devices();
     case cli::Command::compare:
         return compare_command(options.compare.a, options.compare.b, options.compare.tolerance);
+    case cli::Command::self_test:
+        return self_test_command(options);
     case cli::Command::render:
         break;
     }

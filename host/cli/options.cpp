@@ -34,8 +34,8 @@ constexpr const char *examples =
     "  clrender scene.xml -D light_radius=10    sets a <default> of the scene\n"
     "  clrender compare a.exr b.exr --tolerance 1e-3\n"
     "\n"
-    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device,\n"
-    "130 interrupted (the picture so far is written).\n";
+    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device\n"
+    "(or one that fails --self-test), 130 interrupted (the picture so far is written).\n";
 
 /// Reads all of `text` as a number; nothing where there is anything else in it.
 template <class Number> std::optional<Number> parse_number(const std::string &text) {
@@ -201,6 +201,7 @@ struct RawOptions {
     std::vector<std::string> generic;
     std::vector<std::string> defines;
     bool list_devices = false;
+    bool self_test = false;
 };
 
 void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
@@ -280,6 +281,10 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->check(not_empty())
         ->group(group);
     app.add_flag("--list-devices", raw.list_devices, "Lists the devices and ends")->group(group);
+    app.add_flag("--self-test", raw.self_test,
+                 "Compares what the device computes with double precision and closed\n"
+                 "forms, and ends: prints a table; exit code 3 if anything is wrong")
+        ->group(group);
     app.add_option("--lanes", raw.lanes, "Paths side by side: auto, 1, 4, 8, 16 (default: auto)")
         ->type_name("N")
         ->check(one_of({"auto", "1", "4", "8", "16"}))
@@ -379,6 +384,8 @@ void check_combination(const Options &options, const RawOptions &raw) {
         refuse("SCENE is missing");
     if (options.command == Command::compare && !options.scene.empty())
         refuse("compare takes two pictures and no SCENE");
+    if (options.command == Command::self_test && !options.scene.empty())
+        refuse("--self-test takes no SCENE");
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
@@ -412,6 +419,7 @@ ParseResult parse_options(int argc, const char *const *argv) {
     try {
         app.parse(reversed_arguments(argc, argv));
         options.command = raw.list_devices    ? Command::list_devices
+                          : raw.self_test     ? Command::self_test
                           : compare->parsed() ? Command::compare
                                               : Command::render;
         check_combination(options, raw);

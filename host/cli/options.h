@@ -12,7 +12,7 @@
 
 namespace clrender::cli {
 
-enum class Command { render, compare, list_devices };
+enum class Command { render, compare, list_devices, self_test };
 enum class Accel { bvh, none };
 
 struct Resolution {

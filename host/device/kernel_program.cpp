@@ -43,9 +43,13 @@ void append_source(const std::vector<KernelSource> &sources, const std::string &
         done.erase(name);
 }
 
-/// The options that every program is compiled with, and these.
-std::string with_standard(const std::string &options) {
-    return "-cl-std=CL1.2 " + options;
+/// The options that every program is compiled with, and these. Where a device can round quotients
+/// and roots correctly it does so when asked; else OpenCL lets them be off by some units.
+std::string with_standard(const cl::Device &device, const std::string &options) {
+    const bool exact = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() &
+                        CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    return std::string("-cl-std=CL1.2 ") +
+           (exact ? "-cl-fp32-correctly-rounded-divide-sqrt " : "") + options;
 }
 
 /// The program from its binary; none where the driver does not take it.
@@ -99,7 +103,7 @@ cl::Program compile_program(const cl::Context &context, const cl::Device &device
                             const std::string &text, const std::string &options) {
     cl::Program program(context, text);
     try {
-        program.build({device}, with_standard(options).c_str());
+        program.build({device}, with_standard(device, options).c_str());
     } catch (const cl::Error &e) {
         throw DeviceError(fmt::format("the kernel does not compile (OpenCL error {}):\n{}", e.err(),
                                       program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
@@ -112,7 +116,7 @@ BuiltKernel build_kernel(const cl::Context &context, const DeviceEntry &entry,
                          const std::string &options,
                          const std::function<void(cl::Kernel &)> &launch) {
     const auto start = std::chrono::steady_clock::now();
-    const std::string all_options = with_standard(options);
+    const std::string all_options = with_standard(entry.device, options);
     KernelCache cache(entry, text, all_options);
     BuiltKernel built;
     built.cached = cache.look_up();

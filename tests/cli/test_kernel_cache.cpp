@@ -74,8 +74,11 @@ TEST_CASE("A cache that is damaged or half removed is filled anew") {
         {{"clrender/kernels", 60}, {"clrender/pocl", 0}, {"clrender/pocl", 5000}}));
     INFO(below << " cut down to " << bytes);
     CHECK_FALSE(caches.render_hits());
-    if (!caches.folder.has("cache/" + below))
-        return; // not PoCL
+    if (below == "clrender/pocl" && !caches.folder.has("cache/" + below)) {
+        WARN("skipped: this device's kernels are not kept by PoCL");
+        return;
+    }
+    REQUIRE(caches.folder.has("cache/" + below));
     const std::string picture = read_file(caches.folder.path() / "a.pfm");
     caches.truncate(below, bytes);
     caches.render_hits();
@@ -91,8 +94,10 @@ TEST_CASE("What an unfinished run has left in PoCL's cache is removed") {
     const Caches caches;
     CHECK_FALSE(caches.render_hits());
     const fs::path below = caches.folder.path() / "cache" / "clrender";
-    if (!fs::exists(below / "pocl"))
-        return; // not PoCL
+    if (!fs::exists(below / "pocl")) {
+        WARN("skipped: this device's kernels are not kept by PoCL");
+        return;
+    }
     const std::string picture = read_file(caches.folder.path() / "a.pfm");
     fs::remove_all(below / "kernels");
     caches.truncate("clrender/pocl", GENERATE(0, 5000));

@@ -4,6 +4,8 @@
 #include "error.h"
 
 #include <catch2/catch.hpp>
+#include <limits>
+#include <regex>
 
 using namespace clrender;
 
@@ -38,4 +40,15 @@ TEST_CASE("headers with a guard are joined once, others wherever they are includ
 TEST_CASE("a header that is not there is named", "[kernel]") {
     CHECK_THROWS_WITH(join_sources({{"main.cl", "#include \"none.clh\"\n"}}, "main.cl"),
                       Catch::Contains("none.clh"));
+}
+
+TEST_CASE("no literal of the kernels is subnormal in float32: devices may take it for 0") {
+    const std::regex number("[0-9][0-9.]*e-[0-9]+");
+    for (const KernelSource &source : embedded_kernel_sources())
+        for (auto found = std::sregex_iterator(source.text.begin(), source.text.end(), number);
+             found != std::sregex_iterator(); ++found) {
+            const double value = std::stod(found->str());
+            INFO(source.name << ": " << found->str());
+            CHECK((value == 0 || value >= double{std::numeric_limits<float>::min()}));
+        }
 }

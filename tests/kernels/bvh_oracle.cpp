@@ -121,6 +121,36 @@ glm::vec3 random_direction(Random &random) {
     }
 }
 
+int rays_of(int count, int full) {
+    if (full_stress())
+        return std::max(count, full);
+    return small_tests() ? std::max(count / 100, 20) : count;
+}
+
+std::vector<Triangle> sphere_mesh(int rings, const glm::vec3 &center, float radius) {
+    const auto corner = [&](int i, int k) {
+        // The poles and the seam are single points, computed from the same angles.
+        const double theta = M_PI * i / rings;
+        const double phi = 2.0 * M_PI * (k % rings) / rings;
+        const double s = i == 0 || i == rings ? 0.0 : std::sin(theta);
+        const Vector p(s * std::cos(phi), s * std::sin(phi), std::cos(theta));
+        return glm::vec3(Vector(center) + double(radius) * p);
+    };
+    std::vector<Triangle> triangles;
+    for (int i = 0; i < rings; ++i) {
+        for (int k = 0; k < rings; ++k) {
+            triangles.push_back({corner(i, k), corner(i + 1, k), corner(i + 1, k + 1)});
+            triangles.push_back({corner(i, k), corner(i + 1, k + 1), corner(i, k + 1)});
+        }
+    }
+    return triangles;
+}
+
+std::size_t misses(const std::vector<BvhProbeHit> &hits) {
+    return std::size_t(std::count_if(
+        hits.begin(), hits.end(), [](const BvhProbeHit &hit) { return hit.prim == BVH_NO_PRIM; }));
+}
+
 std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
     return run(&Probe::closest, bvh, rays);
 }

@@ -16,6 +16,7 @@ namespace clrender::test {
 using Vector = glm::vec<3, double, glm::defaultp>;
 using Triangle = std::array<glm::vec3, 3>;
 using Random = std::mt19937;
+using Rays = std::vector<BvhProbeRay>;
 
 struct BvhScene {
     std::vector<Triangle> triangles;
@@ -34,6 +35,15 @@ BvhProbeRay probe_ray(const glm::vec3 &o, const glm::vec3 &d, float t_max = INFI
 /// Uniform on the unit sphere, and uniform in [-1, 1]^3.
 glm::vec3 random_direction(Random &random);
 glm::vec3 random_point(Random &random);
+
+/// The number of rays, fewer under CLRENDER_TEST_SMALL; `full` of them in the stress suite.
+int rays_of(int count, int full = 0);
+
+/// A closed sphere of `rings` x `rings` quads, cut in two; all corners shared exactly.
+std::vector<Triangle> sphere_mesh(int rings, const glm::vec3 &center, float radius);
+
+/// How many of the rays have met nothing.
+std::size_t misses(const std::vector<BvhProbeHit> &hits);
 
 /// The kernels over a tree, on the tests' device.
 std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);

@@ -79,4 +79,9 @@ bool small_tests() {
     return value != nullptr && std::string(value) == "1";
 }
 
+bool full_stress() {
+    const char *value = std::getenv("CLRENDER_STRESS");
+    return value != nullptr && std::string(value) == "full";
+}
+
 } // namespace clrender::test

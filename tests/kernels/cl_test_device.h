@@ -55,4 +55,8 @@ private:
 /// True under CLRENDER_TEST_SMALL=1: fewer rays, for Oclgrind and other slow devices.
 [[nodiscard]] bool small_tests();
 
+/// True under CLRENDER_STRESS=full (scripts/stress): the sizes that robustness asks for, where the
+/// ordinary tests have a part of them.
+[[nodiscard]] bool full_stress();
+
 } // namespace clrender::test

@@ -23,7 +23,7 @@ std::vector<float> pairs(const ClTestDevice &device, const Request &r, int lanes
                          int sampler = 0, const char *probe = "probe_sampler_pair") {
     const std::string options =
         "-DLANES=" + std::to_string(lanes) + " -DSAMPLER=" + std::to_string(sampler);
-    cl::Kernel kernel(device.build("probes/function_probes.cl", options), probe);
+    cl::Kernel kernel(device.build("probes/sampler_probes.cl", options), probe);
     const std::size_t count = r.count;
     const cl::Buffer out = device.allocate(2 * count * sizeof(float));
     kernel.setArg(0, out);

@@ -1,6 +1,7 @@
 /// Closed-form light transport: each test derives the radiance of every pixel and compares.
 
 #include "render_adapter.h"
+#include "selftest/check.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -78,11 +79,11 @@ void check_closed_form(const std::string &name, const std::string &xml, int spp,
 
 /// Every pixel has this value, to a relative error of `tolerance`.
 void check_constant(const Image &image, double value, double tolerance) {
-    double worst = 0;
+    selftest::Worst worst;
     for (const float pixel : image.f32)
-        worst = std::max(worst, std::abs(double{pixel} / value - 1));
+        worst.see(std::abs(double{pixel} / value - 1));
     INFO("expected " << value);
-    CHECK(worst <= tolerance);
+    CHECK(worst.value() <= tolerance);
 }
 
 double fresnel(double cos_i, double eta) {
@@ -118,15 +119,15 @@ TEST_CASE("a point light gives rho/pi I cos/d^2 at the centres of the pixels") {
                        R"(<emitter type="point"><point name="position" x="1" y="2" z=".5"/>
             <rgb name="intensity" value="10"/></emitter>)"),
         {.spp = 4, .pixel_centers = true});
-    double worst = 0;
+    selftest::Worst worst;
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
             const dvec3 to_light = light - floor_point(x, y);
             const double d = glm::length(to_light);
             const double expected = albedo / pi * 10 * (to_light.y / d) / (d * d);
-            worst = std::max(worst, std::abs(value_at(picture.mean, x, y) / expected - 1));
+            worst.see(std::abs(value_at(picture.mean, x, y) / expected - 1));
         }
-    CHECK(worst <= 1e-5);
+    CHECK(worst.value() <= 1e-5);
 }
 
 // A sphere of radius r that is wholly above the horizon gives the irradiance pi L (r/d)^2 cos.
