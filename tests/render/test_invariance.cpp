@@ -54,7 +54,11 @@ Scene small_scene(double s, double t = 0) {
 /// A floor and a ball below a map, brighter upwards and towards one side, without a sun, which BSDF
 /// sampling would hardly find.
 Scene sky_scene(double scale) {
-    Image sky{64, 32, 3, PixelType::f32, {}, {}};
+    Image sky;
+    sky.width = 64;
+    sky.height = 32;
+    sky.channels = 3;
+    sky.type = PixelType::f32;
     for (int row = sky.height - 1; row >= 0; --row)
         for (int column = 0; column < sky.width; ++column)
             for (const float tint : {0.7f, 0.8f, 1.0f})
