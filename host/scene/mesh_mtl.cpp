@@ -261,7 +261,7 @@ std::vector<std::string> find_libraries(const std::string &folder, const std::st
         fs::path path;
         for (; end > first; --end) {
             const char *begin = words[first].data();
-            const Words::const_reference last = words[end - 1];
+            const std::string_view last = words[end - 1];
             path = fs::path(folder) /
                    std::string(begin, static_cast<std::size_t>(last.data() + last.size() - begin));
             if (is_file(path))

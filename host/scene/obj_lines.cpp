@@ -25,19 +25,20 @@ bool take_index(const char *&p, const char *end) {
     return error == std::errc() && value != 0 && value != INT_MIN;
 }
 
-/// A corner of a face: v, v/vt, v//vn or v/vt/vn with nonzero integers.
+/// A corner of a face: v, v/vt, v//vn or v/vt/vn with nonzero integers, where vt and vn may be left
+/// out behind their strokes as well.
 bool is_corner(std::string_view word) {
     const char *p = word.data();
     const char *end = p + word.size();
     if (!take_index(p, end))
         return false;
-    const bool has_uv = end - p > 1 && *p == '/' && p[1] != '/';
-    if (has_uv && (++p, !take_index(p, end)))
-        return false;
-    if (p == end)
-        return true;
-    p += has_uv ? 1 : 2;
-    return p < end && p[-1] == '/' && (has_uv || p[-2] == '/') && take_index(p, end) && p == end;
+    for (int strokes = 0; strokes < 2 && p != end; ++strokes) {
+        if (*p++ != '/')
+            return false;
+        if (p != end && *p != '/' && !take_index(p, end))
+            return false;
+    }
+    return p == end;
 }
 
 /// `keyword` is followed by at least `least` numbers, and by nothing else.
@@ -59,6 +60,21 @@ std::string check_face(const std::vector<std::string_view> &words) {
                                "indices from 1, or negative ones",
                                quoted(words[i]));
     return {};
+}
+
+/// Takes away strokes at the ends of words, behind which the parser would take the next word's
+/// number for theirs.
+void erase_last_strokes(std::string &line) {
+    std::size_t end = 0;
+    for (const char c : line) {
+        if (blanks.find(c) != std::string_view::npos)
+            while (end > 0 && line[end - 1] == '/')
+                --end;
+        line[end++] = c;
+    }
+    while (end > 0 && line[end - 1] == '/')
+        --end;
+    line.resize(end);
 }
 
 } // namespace
@@ -193,8 +209,11 @@ std::string check_obj_line(std::string &line) {
         return check_numbers(split_words(text), 3);
     if (keyword == "vt")
         return check_numbers(split_words(text), 1);
-    if (keyword == "f")
-        return check_face(split_words(text));
+    if (keyword == "f") {
+        std::string reason = check_face(split_words(text));
+        erase_last_strokes(line);
+        return reason;
+    }
     line.clear();
     return {};
 }

@@ -18,15 +18,18 @@ glm::dvec3 area_vector(std::span<const glm::dvec3> corners) {
 }
 
 /// The largest of the coordinates, and of their distances from the first corner.
-std::pair<double, double> largest_of(std::span<const glm::dvec3> corners) {
-    double place = 0;
-    double extent = 0;
+struct Size {
+    double place = 0, extent = 0;
+};
+
+Size size_of(std::span<const glm::dvec3> corners) {
+    Size size;
     for (const glm::dvec3 &corner : corners)
         for (int axis = 0; axis < 3; ++axis) {
-            place = std::max(place, std::abs(corner[axis]));
-            extent = std::max(extent, std::abs(corner[axis] - corners[0][axis]));
+            size.place = std::max(size.place, std::abs(corner[axis]));
+            size.extent = std::max(size.extent, std::abs(corner[axis] - corners[0][axis]));
         }
-    return {place, extent};
+    return size;
 }
 
 /// Seen along `normal`, as a polygon in the plane that runs counterclockwise, scaled to [-1, 1].
@@ -78,7 +81,8 @@ bool PolygonCutter::cut(std::span<const glm::dvec3> corners) {
     cut_fan(corners.size());
     if (corners.size() == 3)
         return true;
-    const auto [place, extent] = largest_of(corners);
+    const Size size = size_of(corners);
+    const double extent = size.extent;
     if (!(extent > 0))
         return true;
     const glm::dvec3 normal = area_vector(corners) / (extent * extent);
@@ -89,7 +93,7 @@ bool PolygonCutter::cut(std::span<const glm::dvec3> corners) {
     // Coordinates that have been rounded to float32 are off by up to 2^-25 of their size; a few
     // times that, as corners are the ends of edges that may have been rotated.
     constexpr double float_error = 0x1p-22;
-    const double rounding = float_error * place / extent;
+    const double rounding = float_error * size.place / extent;
     if (area <= rounding) {
         // Without area: a line is cut well by any fan, a figure of eight by none.
         const glm::dvec3 along = *std::max_element(

@@ -89,6 +89,20 @@ TEST_CASE("OBJ lines end with LF, CRLF or CR, and a backslash continues them", "
               .triangles.size() == 1);
 }
 
+TEST_CASE("OBJ corners may end with strokes that nothing follows", "[obj]") {
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 1 0\n";
+    const test::ScratchFolder folder;
+    const auto read = [&](const std::string &line) {
+        return read_obj_mesh(folder.file("m.obj", corners + line), {});
+    };
+    for (const char *line : {"f 1/ 2/ 3/\n", "f 1// 2// 3//\n", "f 1/1/ 2/1/ 3/1/\n"})
+        CHECK(read(line).normals.at(0) == glm::vec3(0, 0, 1));
+    CHECK(read("f 1//1 2//1 3//1\n").normals.at(0) == glm::vec3(0, 1, 0));
+    for (const char *line :
+         {"f 1/// 2 3\n", "f /1 2 3\n", "f 1/0 2 3\n", "f 1/a 2 3\n", "f 1//0 2 3\n"})
+        CHECK(has(test::error_of([&] { read(line); }), "m.obj:6: face vertex"));
+}
+
 TEST_CASE("line ends are found at the border of a block", "[obj]") {
     // Blocks of 64 KiB: the CR is the last byte of the first one, the LF the first of the second.
     const std::string corners = "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n";
