@@ -15,8 +15,8 @@ namespace clrender::selftest {
 /// Records that share a shape, or a sampler's seed and dimension: a multiple of every width.
 inline constexpr std::size_t probe_group = 16;
 
-/// What the probes are compiled for: everything that the probed functions can do. `filter` is one of
-/// KernelConfig::FILTER.
+/// What the probes are compiled for: everything that the probed functions can do. `filter` is one
+/// of KernelConfig::FILTER.
 KernelConfig probe_config(int lanes, int filter);
 
 class ProbeDevice {

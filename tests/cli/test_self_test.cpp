@@ -16,7 +16,8 @@ TEST_CASE("The self-test passes on this device and prints a table") {
                                Catch::Contains("\nself-test: pass: "));
 }
 
-TEST_CASE("The self-test names the function of a wrong kernel, and exit code 3 says that it failed") {
+TEST_CASE(
+    "The self-test names the function of a wrong kernel, and exit code 3 says that it failed") {
     const TempFolder folder;
     const fs::path kernels = folder.path() / "kernels";
     fs::copy(fs::path(CLRENDER_TEST_DIR) / ".." / "kernels", kernels, fs::copy_options::recursive);
