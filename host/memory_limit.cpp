@@ -1,5 +1,7 @@
 #include "memory_limit.h"
 
+#include "error.h"
+
 #include <algorithm>
 #include <atomic>
 #include <fmt/format.h>
@@ -55,6 +57,13 @@ std::string claim_memory(std::uint64_t bytes) {
                                bytes, most, left);
     } while (!claimed.compare_exchange_weak(before, before + bytes));
     return {};
+}
+
+void check_total_memory(std::uint64_t bytes) {
+    if (bytes > memory_limit())
+        throw InputError({"--max-memory", 0},
+                         fmt::format("the scene and the film need {} bytes, expected at most {}",
+                                     bytes, memory_limit()));
 }
 
 } // namespace clrender

@@ -20,4 +20,7 @@ void forget_memory_claims();
 /// had, with the byte counts; then nothing is claimed.
 std::string claim_memory(std::uint64_t bytes);
 
+/// Throws InputError with the byte counts if `bytes`, all that a render takes, are above the limit.
+void check_total_memory(std::uint64_t bytes);
+
 } // namespace clrender

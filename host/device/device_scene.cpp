@@ -59,11 +59,7 @@ void check_memory(const DeviceEntry &entry, const std::vector<View> &arrays,
         largest = std::max(largest, array.bytes);
     }
     // The arrays lie on the host too.
-    const std::size_t everywhere = 2 * total - film_bytes;
-    if (everywhere > memory_limit())
-        throw InputError({"--max-memory", 0},
-                         fmt::format("the scene and the film need {} bytes, expected at most {}",
-                                     everywhere, memory_limit()));
+    check_total_memory(2 * total - film_bytes);
     if (total > entry.memory_bytes)
         throw DeviceError(fmt::format("the scene and the film need {} bytes, but {} has {}", total,
                                       entry.name, entry.memory_bytes));
