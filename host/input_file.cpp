@@ -59,10 +59,8 @@ void InputFile::fail(const std::string &reason) const {
 std::string read_input_file(const std::string &path, const SourceLocation &referrer) {
     InputFile file(path, referrer);
     const SourceLocation where = referrer.file.empty() ? SourceLocation{path, 0} : referrer;
-    if (file.size() > memory_limit())
-        throw InputError(where, path + ": the file has " + std::to_string(file.size()) +
-                                    " bytes, but only " + std::to_string(memory_limit()) +
-                                    " are allowed (--max-memory)");
+    if (const std::string reason = claim_memory(file.size()); !reason.empty())
+        throw InputError(where, path + ": " + reason);
     std::string bytes;
     try {
         bytes.resize(file.size());
