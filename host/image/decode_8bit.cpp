@@ -37,6 +37,8 @@ struct StbFree {
 
 [[noreturn]] void fail() {
     const char *reason = stbi_failure_reason();
+    if (reason != nullptr && std::string_view(reason) == "outofmem")
+        throw FormatError("cannot be decoded (it takes more memory than its header promises)");
     throw FormatError(std::string("cannot be decoded (") + (reason ? reason : "unknown") + ")");
 }
 

@@ -2,6 +2,7 @@
 
 #include "../log.h"
 #include "../memory_limit.h"
+#include "camera_place.h"
 #include "mitsuba_xml.h"
 #include "model_scene.h"
 
@@ -28,8 +29,8 @@ Scene read_scene(const std::string &path, const LoadOptions &options) {
     return load_model(path);
 }
 
-/// Bytes that the device's arrays take, on the host and on the device together, measured on meshes
-/// and maps of a million triangles and pixels. A mesh counts for each shape that has it.
+/// Bytes that the device's arrays take, on the host and on the device together, rounded up from
+/// what meshes and maps have taken. A mesh counts for each shape that has it.
 std::uint64_t flat_bytes_estimate(const Scene &scene) {
     constexpr std::uint64_t triangle_bytes = 250;
     constexpr std::uint64_t vertex_bytes = 40;
@@ -61,6 +62,7 @@ Scene load_scene(const std::string &path, const LoadOptions &options) {
     Scene scene = read_scene(path, options);
     if (const std::string reason = claim_memory(flat_bytes_estimate(scene)); !reason.empty())
         throw InputError({path, 0}, "the scene " + reason);
+    warn_of_enclosed_camera(scene);
     return scene;
 }
 
