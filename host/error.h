@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace clrender {
 
@@ -18,14 +19,38 @@ struct SourceLocation {
     }
 };
 
+/// `text` as one line: names and texts out of a file may hold anything.
+inline std::string as_one_line(std::string text) {
+    for (char &c : text)
+        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f')
+            c = '?';
+    return text;
+}
+
 /// Bad input: exit code 2, no output file.
 class InputError : public std::runtime_error {
 public:
     InputError(const SourceLocation &where, const std::string &what)
-        : std::runtime_error(where.str() + ": " + what) {}
+        : std::runtime_error(as_one_line(where.str() + ": " + what)) {}
 
     /// Several faults, each a line as above.
-    explicit InputError(const std::string &lines) : std::runtime_error(lines) {}
+    explicit InputError(const std::vector<std::string> &faults)
+        : std::runtime_error(as_lines(faults)) {}
+
+private:
+    static std::string as_lines(const std::vector<std::string> &faults) {
+        std::string lines;
+        for (const std::string &fault : faults)
+            lines += (lines.empty() ? "" : "\n") + as_one_line(fault);
+        return lines;
+    }
+};
+
+/// A file that cannot be written: exit code 4; everything else is written all the same.
+class OutputError : public std::runtime_error {
+public:
+    OutputError(const std::string &path, const std::string &what)
+        : std::runtime_error(as_one_line(path + ": " + what)) {}
 };
 
 /// No usable device, or the device failed: exit code 3.

@@ -1,11 +1,11 @@
 #include "input_file.h"
 
+#include "memory_limit.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <new>
@@ -57,20 +57,19 @@ void InputFile::fail(const std::string &reason) const {
 }
 
 std::string quoted_path(const std::string &path) {
-    std::string result = path;
-    std::replace_if(
-        result.begin(), result.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
-    return '"' + result + '"';
+    return '"' + as_one_line(path) + '"';
 }
 
 std::string read_input_file(const std::string &path, const SourceLocation &referrer) {
     InputFile file(path, referrer);
+    const SourceLocation where = referrer.file.empty() ? SourceLocation{path, 0} : referrer;
+    if (const std::string reason = claim_memory(file.size()); !reason.empty())
+        throw InputError(where, path + ": " + reason);
     std::string bytes;
     try {
         bytes.resize(file.size());
     } catch (const std::exception &) {
-        throw InputError(referrer.file.empty() ? SourceLocation{path, 0} : referrer,
-                         path + ": does not fit into memory");
+        throw InputError(where, path + ": does not fit into memory");
     }
     bytes.resize(file.read(bytes.data(), bytes.size()));
     return bytes;

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdio>
-#include <fmt/core.h>
 #include <utility>
 
 namespace clrender::log {
@@ -17,7 +16,7 @@ void show(const std::string &line) {
     if (holder != nullptr)
         *holder += line;
     else
-        fmt::print(stderr, "{}", line);
+        raw(line);
 }
 
 } // namespace
@@ -27,11 +26,21 @@ void set_level(Level level) {
 }
 
 void warn(const SourceLocation &where, const std::string &text) {
-    show(fmt::format("{}: warning: {}\n", where.str(), text));
+    show(as_one_line(where.str() + ": warning: " + text) + "\n");
 }
 
 void warn(const std::string &text) {
-    show(fmt::format("clrender: warning: {}\n", text));
+    show(as_one_line("clrender: warning: " + text) + "\n");
+}
+
+void error(const std::string &text) {
+    show(as_one_line("clrender: " + text) + "\n");
+}
+
+void raw(const std::string &text) {
+    // Not fmt::print, which throws where stderr is closed or its disk is full.
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
 }
 
 void info(const std::string &text) {

@@ -173,9 +173,10 @@ CLR_INLINE void paths_count_nonfinite(const SceneData *scene, const Work *work, 
     int lanes[LANES];
     store_int(bad, lanes);
     for_each_lane(i, lanes) {
-        if (counters->nonfinite++ == 0)
+        if (counters->nonfinite == 0)
             counters->first_nonfinite = (uint)(work->y + pixel[i] / TILE) * scene->frame->width +
                                         (uint)(work->x + pixel[i] % TILE);
+        counters->nonfinite = add_sat(counters->nonfinite, 1u);
     }
 }
 

@@ -1,10 +1,7 @@
 #include "compare.h"
 
 #include "film/metrics.h"
-
-#include <fmt/format.h>
-
-#include <cstdio>
+#include "print.h"
 
 namespace clrender {
 
@@ -13,23 +10,20 @@ int compare_command(const std::string &a, const std::string &b, double tolerance
         throw InputError({"--tolerance", 0}, "negative, expected a number of at least 0");
     const ImageDifference d = compare_images(read_image(a), read_image(b), a);
 
-    fmt::print("mean squared error  {:.6g}\n", d.mse);
-    fmt::print("relMSE              {:.6g}   mean((a - r)^2 / (r^2 + 0.01)), r from {}\n",
-               d.rel_mse, b);
-    fmt::print("relMSE, trimmed     {:.6g}   without the worst 0.1% of the pixels\n",
-               d.rel_mse_trimmed);
-    fmt::print("bias                {:+.6g}   mean(a - r)\n", d.bias);
-    fmt::print("largest difference  {:.6g}   at pixel ({}, {})\n", d.largest, d.where[0],
-               d.where[1]);
+    print("mean squared error  {:.6g}\n", d.mse);
+    print("relMSE              {:.6g}   mean((a - r)^2 / (r^2 + 0.01)), r from {}\n", d.rel_mse, b);
+    print("relMSE, trimmed     {:.6g}   without the worst 0.1% of the pixels\n", d.rel_mse_trimmed);
+    print("bias                {:+.6g}   mean(a - r)\n", d.bias);
+    print("largest difference  {:.6g}   at pixel ({}, {})\n", d.largest, d.where[0], d.where[1]);
     if (d.nonfinite > 0)
-        fmt::print("not finite          {} pixels, left out above\n", d.nonfinite);
+        print("not finite          {} pixels, left out above\n", d.nonfinite);
 
     const bool differs = d.rel_mse > tolerance || d.nonfinite > 0;
     if (differs)
-        fmt::print("differs: {}\n", d.nonfinite > 0 ? "pixels are NaN or infinite"
-                                                    : fmt::format("relMSE is above the tolerance "
-                                                                  "{:g}",
-                                                                  tolerance));
+        print("differs: {}\n", d.nonfinite > 0 ? "pixels are NaN or infinite"
+                                               : fmt::format("relMSE is above the tolerance "
+                                                             "{:g}",
+                                                             tolerance));
     return differs ? 1 : 0;
 }
 

@@ -64,6 +64,28 @@ cl::Program take_binary(const cl::Context &context, const cl::Device &device,
     }
 }
 
+/// What the compiler has said; nothing where the runtime has not come so far.
+std::string build_log_of(const cl::Program &program, const cl::Device &device) {
+    try {
+        return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    } catch (const cl::Error &) {
+        return {};
+    }
+}
+
+/// The first line of a compiler's log that tells of an error, else its first one.
+std::string first_error(const std::string &build_log) {
+    std::istringstream lines(build_log);
+    std::string first;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("error") != std::string::npos)
+            return as_one_line(line);
+        if (first.empty())
+            first = line;
+    }
+    return first.empty() ? "the compiler does not say why" : as_one_line(first);
+}
+
 } // namespace
 
 std::vector<KernelSource> read_kernel_sources(const std::string &folder) {
@@ -105,8 +127,10 @@ cl::Program compile_program(const cl::Context &context, const cl::Device &device
     try {
         program.build({device}, with_standard(device, options).c_str());
     } catch (const cl::Error &e) {
-        throw DeviceError(fmt::format("the kernel does not compile (OpenCL error {}):\n{}", e.err(),
-                                      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
+        const std::string build_log = build_log_of(program, device);
+        log::detail(build_log);
+        throw DeviceError(fmt::format("the kernel does not compile (OpenCL error {}): {}", e.err(),
+                                      first_error(build_log)));
     }
     return program;
 }

@@ -51,7 +51,7 @@ void FileReads::run(bool all_faults) {
             }
         },
         tbb::simple_partitioner());
-    std::string faults;
+    std::vector<std::string> faults;
     for (const Outcome &outcome : outcomes) {
         log::pass_on(outcome.messages);
         if (!outcome.failure)
@@ -61,7 +61,7 @@ void FileReads::run(bool all_faults) {
         } catch (const InputError &error) {
             if (!all_faults)
                 throw;
-            faults.append(faults.empty() ? "" : "\n").append(error.what());
+            faults.emplace_back(error.what());
         }
     }
     if (!faults.empty())

@@ -1,6 +1,8 @@
 #include "load_scene.h"
 
 #include "../log.h"
+#include "../memory_limit.h"
+#include "camera_place.h"
 #include "mitsuba_xml.h"
 #include "model_scene.h"
 
@@ -10,7 +12,9 @@
 
 namespace clrender {
 
-Scene load_scene(const std::string &path, const LoadOptions &options) {
+namespace {
+
+Scene read_scene(const std::string &path, const LoadOptions &options) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -23,6 +27,43 @@ Scene load_scene(const std::string &path, const LoadOptions &options) {
         log::warn(std::string("-D ").append(name).append(": nothing in ").append(path) +
                   " uses it");
     return load_model(path);
+}
+
+/// Bytes that the device's arrays take, on the host and on the device together, rounded up from
+/// what meshes and maps have taken. A mesh counts for each shape that has it.
+std::uint64_t flat_bytes_estimate(const Scene &scene) {
+    constexpr std::uint64_t triangle_bytes = 250;
+    constexpr std::uint64_t vertex_bytes = 40;
+    constexpr std::uint64_t texel_bytes_u8 = 8;
+    constexpr std::uint64_t texel_bytes_f32 = 24;
+    constexpr std::uint64_t map_bytes = 48;
+    const auto pixels = [](const Image &image) {
+        return static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+    };
+    std::uint64_t bytes = 0;
+    for (const Shape &shape : scene.shapes)
+        if (shape.mesh)
+            bytes += triangle_bytes * shape.mesh->triangles.size() +
+                     vertex_bytes * shape.mesh->positions.size();
+    for (const Texture &texture : scene.textures)
+        if (texture.bitmap)
+            bytes += pixels(*texture.bitmap) *
+                     (texture.bitmap->type == PixelType::u8 ? texel_bytes_u8 : texel_bytes_f32);
+    for (const Emitter &emitter : scene.emitters)
+        if (emitter.bitmap)
+            bytes += map_bytes * pixels(*emitter.bitmap);
+    return bytes;
+}
+
+} // namespace
+
+Scene load_scene(const std::string &path, const LoadOptions &options) {
+    forget_memory_claims();
+    Scene scene = read_scene(path, options);
+    if (const std::string reason = claim_memory(flat_bytes_estimate(scene)); !reason.empty())
+        throw InputError({path, 0}, "the scene " + reason);
+    warn_of_enclosed_camera(scene);
+    return scene;
 }
 
 } // namespace clrender

@@ -3,6 +3,7 @@
 
 #include "../input_file.h"
 #include "../log.h"
+#include "../memory_limit.h"
 #include "mesh_io.h"
 #include "mesh_normals.h"
 #include "mesh_polygons.h"
@@ -325,7 +326,11 @@ void PlyFaces::read_strips(const PlyElement &element, const std::string &path, P
 
             // An index of -1 ends a strip and begins the next one.
             face_.clear();
-            for (std::uint64_t left = values.list_length(property); left > 0; --left) {
+            const std::uint64_t length = values.list_length(property);
+            if (const std::string reason = claim_memory(length * sizeof(Mesh::triangles[0]));
+                !reason.empty())
+                values.fail(reason);
+            for (std::uint64_t left = length; left > 0; --left) {
                 if (const auto vertex = read_strip_index(property, vertex_count_, values))
                     face_.push_back(*vertex);
                 else
@@ -390,6 +395,13 @@ Mesh read_ply_mesh(const std::string &path, const MeshReadOptions &options,
                          "no elements 'face', expected a mesh of triangles");
 
     warn_of_unread(header, path);
+
+    // At least a triangle for each face; strips claim theirs as they come.
+    if (const std::string reason = claim_memory(
+            vertices->count * (sizeof(glm::dvec3) + sizeof(glm::vec3) + sizeof(glm::vec2)) +
+            (has_faces ? faces->count * sizeof(Mesh::triangles[0]) : 0));
+        !reason.empty())
+        throw InputError({path, vertices->line}, reason);
 
     // The elements follow in the order of the header.
     Mesh mesh;

@@ -4,7 +4,6 @@
 #include "mitsuba_text.h"
 
 #include <algorithm>
-#include <fmt/format.h>
 #include <sstream>
 #include <tbb/parallel_for.h>
 
@@ -27,7 +26,7 @@ Scene SceneReader::read() {
                         "> outside of a sensor has no effect of its own");
     attempt([&] { root.finish(); });
     if (!faults_.empty())
-        throw InputError(fmt::format("{}", fmt::join(faults_, "\n")));
+        throw InputError(faults_);
     warn_of_missing(root);
     return std::move(scene_);
 }

@@ -35,8 +35,8 @@ private:
     void parse();
 
     std::string path_;
-    std::string text_; ///< parsed in place; must outlive the document
-    std::vector<std::ptrdiff_t> line_ends_;
+    std::string text_;                     ///< parsed in place; must outlive the document
+    std::vector<std::uint32_t> line_ends_; ///< max_xml_bytes fits
     pugi::xml_document document_;
 };
 

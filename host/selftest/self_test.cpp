@@ -2,11 +2,13 @@
 
 #include "checks.h"
 #include "device/kernel_program.h"
+#include "print.h"
 #include "reference_scenes.h"
 
 #include <array>
 #include <chrono>
-#include <fmt/core.h>
+#include <cstdio>
+#include <fmt/format.h>
 
 namespace clrender::selftest {
 
@@ -20,7 +22,7 @@ class Table {
 public:
     void add(const std::vector<Check> &rows) {
         for (const Check &row : rows) {
-            fmt::print("{}\n", describe(row));
+            print("{}\n", describe(row));
             if (!row.passed())
                 failed_.push_back(row);
         }
@@ -32,13 +34,13 @@ public:
 
     [[nodiscard]] bool finish(const std::string &device, double seconds) const {
         for (const Check &row : failed_)
-            fmt::print("self-test: {} is wrong: {} is {:.3g}, at most {:.3g} is right\n",
-                       row.function, row.what, row.figure, row.bar);
+            print("self-test: {} is wrong: {} is {:.3g}, at most {:.3g} is right\n", row.function,
+                  row.what, row.figure, row.bar);
         if (failed_.empty())
-            fmt::print("self-test: pass: {} checks on {} in {:.1f} s\n", count_, device, seconds);
+            print("self-test: pass: {} checks on {} in {:.1f} s\n", count_, device, seconds);
         else
-            fmt::print("self-test: FAIL: {} of {} checks on {} in {:.1f} s\n", failed_.size(),
-                       count_, device, seconds);
+            print("self-test: FAIL: {} of {} checks on {} in {:.1f} s\n", failed_.size(), count_,
+                  device, seconds);
         return failed_.empty();
     }
 

@@ -111,7 +111,7 @@ CLR_STATIC_SIZE(FilmPixel, 160);
 typedef struct {
     uint rays_low;
     uint rays_high;
-    uint nonfinite;       /* samples that were not finite; they count as black */
+    uint nonfinite;       /* samples that were not finite, 2^32 - 1 at most; they count as black */
     uint first_nonfinite; /* pixel index of the first, valid where nonfinite > 0 */
 } ItemCounters;
 CLR_STATIC_SIZE(ItemCounters, 16);

@@ -184,6 +184,45 @@ TEST_CASE("Scenes that include each other are refused") {
     CHECK_THAT(refuse(folder, "a.xml"), Catch::Contains(".xml:2: "));
 }
 
+TEST_CASE(
+    "A line of a thousand million characters is refused, and a polygon of a million corners") {
+    const TempFolder folder;
+    folder.write("hole.obj", "v 0 0 0\nf 1");
+    fs::resize_file(folder.path() / "hole.obj", 1000000000);
+    CHECK_THAT(refuse(folder, "hole.obj"), Catch::StartsWith("hole.obj:2: line longer"));
+
+    std::string polygon = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
+    for (int i = 0; i < 333334; ++i)
+        polygon += " 1 2 3";
+    folder.write("polygon.obj", polygon + "\n");
+    CHECK_THAT(refuse(folder, "polygon.obj"), Catch::StartsWith("polygon.obj:4: line longer"));
+}
+
+TEST_CASE("A fault at the end of a long file is told in little memory") {
+    const TempFolder folder;
+    std::string vertices, faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 1000000; ++i) {
+        vertices += "v 0 0 0\n";
+        faces += "f 1 2 3\n";
+    }
+    folder.write("vertices.obj", vertices + "f 1 2 x\n");
+    folder.write("faces.obj", faces + "f 1 2 x\n");
+    CHECK_THAT(refuse(folder, "vertices.obj"), Catch::StartsWith("vertices.obj:1000001: "));
+    CHECK_THAT(refuse(folder, "faces.obj"), Catch::StartsWith("faces.obj:1000004: "));
+
+    std::string elements = "<scene version=\"3.0.0\">\n";
+    for (int i = 0; i < 100000; ++i)
+        elements += "<float name=\"a" + std::to_string(i) + "\" value=\"1\"/>\n";
+    folder.write("elements.xml", elements + "</shape>");
+    CHECK_THAT(refuse(folder, "elements.xml"), Catch::StartsWith("elements.xml:100002: "));
+}
+
+TEST_CASE("Names out of a file stay on one line") {
+    const TempFolder folder;
+    folder.write("scene.xml", scene_with_image("no&#10;such&#9;file.png"));
+    CHECK_THAT(refuse(folder, "scene.xml"), Catch::StartsWith("scene.xml:5: "));
+}
+
 TEST_CASE("A line of 64 million characters is refused") {
     const TempFolder folder;
     folder.write("long.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + std::string(64000000, '1') + "\n");
