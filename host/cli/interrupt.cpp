@@ -27,6 +27,11 @@ void catch_interrupts() {
     sigaction(SIGTERM, &action, nullptr);
 }
 
+void ignore_write_signals() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
 bool interrupted() {
     return flag;
 }

@@ -2,6 +2,9 @@
 
 #include "flatten/generality.h"
 #include "image/image.h"
+#include "log.h"
+#include "output_file.h"
+#include "scene/limits.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,8 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int max_int = std::numeric_limits<int>::max();
-constexpr int max_side = 65536;
-constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
 
 constexpr const char *examples =
     "Examples:\n"
@@ -34,7 +35,8 @@ constexpr const char *examples =
     "  clrender scene.xml -D light_radius=10    sets a <default> of the scene\n"
     "  clrender compare a.exr b.exr --tolerance 1e-3\n"
     "\n"
-    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device,\n"
+    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device, 4 a\n"
+    "file could not be written (all others are), 5 out of memory, 70 a fault of clrender itself,\n"
     "130 interrupted (the picture so far is written).\n";
 
 /// Reads all of `text` as a number; nothing where there is anything else in it.
@@ -99,11 +101,12 @@ std::string check_resolution(const std::string &text) {
     const auto size = parse_resolution(text);
     if (!size)
         return fmt::format("'{}' is not WIDTHxHEIGHT, such as 640x480", text);
-    const auto is_side = [](int side) { return side >= 1 && side <= max_side; };
+    const auto is_side = [](int side) { return side >= 1 && side <= max_picture_side; };
     if (!is_side(size->width) || !is_side(size->height))
-        return fmt::format("'{}' is not within 1x1 and {}x{}", text, max_side, max_side);
-    if (std::int64_t{size->width} * size->height > max_pixels)
-        return fmt::format("'{}' has more than {} pixels", text, max_pixels);
+        return fmt::format("'{}' is not within 1x1 and {}x{}", text, max_picture_side,
+                           max_picture_side);
+    if (std::int64_t{size->width} * size->height > max_picture_pixels)
+        return fmt::format("'{}' has more than {} pixels", text, max_picture_pixels);
     return {};
 }
 
@@ -117,22 +120,6 @@ std::string check_define(const std::string &text) {
     if (equals == std::string::npos || name.empty() ||
         !std::all_of(name.begin(), name.end(), is_name_char))
         return fmt::format("'{}' is not name=value (a name of letters, digits, _ - .)", text);
-    return {};
-}
-
-/// A file that can be made later: found out now, not after an hour of rendering.
-std::string check_new_file(const std::string &path) {
-    if (path.empty())
-        return "the file name is empty";
-    std::error_code ignored;
-    if (fs::is_directory(path, ignored))
-        return fmt::format("'{}' is a folder", path);
-    const fs::path folder = fs::path(path).parent_path();
-    if (!folder.empty() && !fs::is_directory(folder, ignored))
-        return fmt::format("there is no folder '{}'", folder.string());
-    if (fs::exists(path, ignored) ? access(path.c_str(), W_OK) != 0
-                                  : access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
-        return fmt::format("'{}' cannot be written", path);
     return {};
 }
 
@@ -151,7 +138,7 @@ bool is_json_path(const std::string &text) {
 std::string check_profile(const std::string &text) {
     if (text == bare_profile)
         return {};
-    return is_json_path(text) ? check_new_file(text)
+    return is_json_path(text) ? why_not_writable(text)
                               : fmt::format("'{}' does not end in .json", text);
 }
 
@@ -177,7 +164,7 @@ std::vector<std::string> reversed_arguments(int argc, const char *const *argv) {
 std::string check_output(const std::string &path) {
     if (!path.empty() && !is_writable_image_path(path))
         return fmt::format("'{}' does not end in .png, .jpg, .hdr, .exr or .pfm", path);
-    return check_new_file(path);
+    return why_not_writable(path);
 }
 
 std::string check_feature(const std::string &name) {
@@ -232,7 +219,7 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
     const char *group = "Sampling (default: as the scene says)";
     app.add_option("-s,--spp", options.spp, "Samples a pixel")
         ->type_name("N")
-        ->check(whole_number(1, max_int))
+        ->check(whole_number(1, max_sample_count))
         ->group(group);
     app.add_option("--max-depth", options.max_depth, "Longest path in segments, -1: no limit")
         ->type_name("N")
@@ -303,7 +290,7 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->group(group);
     app.add_option("--stats", options.stats, "Writes the figures of the run as JSON")
         ->type_name("FILE.json")
-        ->check(CLI::Validator(check_new_file, ""))
+        ->check(CLI::Validator(why_not_writable, ""))
         ->group(group);
     app.add_flag("--profile", raw.profile,
                  "Prints where the device's time goes; with FILE.json after it,\n"
@@ -383,16 +370,20 @@ void check_combination(const Options &options, const RawOptions &raw) {
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
         refuse("--precision double traces one path at a time, it excludes --lanes " + raw.lanes);
-    std::set<std::string> files;
-    for (const std::string &output : options.outputs)
-        if (!files.insert(fs::path(output).lexically_normal().string()).second)
-            refuse(fmt::format("--output: '{}' is given twice", output));
+    std::vector<std::string> files = options.outputs;
+    for (const std::string &file : {options.stats, raw.profile})
+        if (!file.empty() && file != bare_profile)
+            files.push_back(file);
+    std::set<std::string> seen;
+    for (const std::string &file : files)
+        if (!seen.insert(fs::path(file).lexically_normal().string()).second)
+            refuse(fmt::format("'{}' is to be written twice", file));
 }
 
 /// One line, whatever CLI11 wrote.
 void print_mistake(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
-    fmt::print(stderr, "clrender: {} (clrender --help lists the options)\n", text);
+    log::error(text + " (clrender --help lists the options)");
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 /// The file formats behind read_image and write_image. All work on bytes in memory; the readers
 /// throw FormatError, to which read_image adds the file's name.
 
+#include "../scene/limits.h"
 #include "image.h"
 
 #include <cstdint>
@@ -19,7 +20,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-inline constexpr std::uint64_t max_pixels = std::uint64_t{1} << 28;
+inline constexpr std::uint64_t max_pixels = max_picture_pixels;
 
 /// Throws unless both sizes are positive and there are at most max_pixels, and `bytes` is at
 /// least the least number of bytes that so many pixels take: pixels / `max_pixels_per_byte`.

@@ -1,5 +1,6 @@
 /// Films and reconstruction filters.
 
+#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
@@ -9,13 +10,10 @@ namespace clrender::mitsuba {
 
 namespace {
 
-constexpr std::int64_t max_side = 65536;
-constexpr std::int64_t max_pixels = std::int64_t{1} << 28U;
-
 void read_size(Properties &properties, FilmSettings &film) {
-    film.width = static_cast<int>(properties.integer("width", film.width, 1, max_side));
-    film.height = static_cast<int>(properties.integer("height", film.height, 1, max_side));
-    if (std::int64_t{film.width} * film.height > max_pixels)
+    film.width = static_cast<int>(properties.integer("width", film.width, 1, max_picture_side));
+    film.height = static_cast<int>(properties.integer("height", film.height, 1, max_picture_side));
+    if (std::int64_t{film.width} * film.height > max_picture_pixels)
         properties.fail("width", "times height is " +
                                      std::to_string(std::int64_t{film.width} * film.height) +
                                      " pixels, expected at most 268435456");
@@ -23,9 +21,10 @@ void read_size(Properties &properties, FilmSettings &film) {
     // The crop window lies within the film.
     film.crop_x = static_cast<int>(properties.integer("crop_offset_x", 0, 0, film.width - 1));
     film.crop_y = static_cast<int>(properties.integer("crop_offset_y", 0, 0, film.height - 1));
-    film.crop_width = static_cast<int>(properties.integer("crop_width", film.width, 1, max_side));
+    film.crop_width =
+        static_cast<int>(properties.integer("crop_width", film.width, 1, max_picture_side));
     film.crop_height =
-        static_cast<int>(properties.integer("crop_height", film.height, 1, max_side));
+        static_cast<int>(properties.integer("crop_height", film.height, 1, max_picture_side));
     if (film.crop_x + film.crop_width > film.width)
         properties.fail("crop_width", "reaches beyond the film, expected at most width - "
                                       "crop_offset_x = " +
