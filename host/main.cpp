@@ -10,6 +10,7 @@
 #include "device/cl_context.h"
 #include "error.h"
 #include "log.h"
+#include "memory_limit.h"
 #include "render/profile.h"
 #include "render/profile_trace.h"
 #include "render/render.h"
@@ -173,6 +174,8 @@ int run(const cli::Options &options) {
         log::set_level(log::Level::quiet);
     else if (options.verbose)
         log::set_level(log::Level::verbose);
+    if (options.max_memory)
+        set_memory_limit(*options.max_memory);
     switch (options.command) {
     case cli::Command::list_devices:
         return show_devices();

@@ -81,6 +81,29 @@ CLI::Validator one_of(const std::vector<std::string> &words) {
             ""};
 }
 
+/// Bytes, or with K, M, G or T behind the number times 1024, 1024^2 and so on, as in 512M, 1.5GiB.
+std::optional<std::uint64_t> parse_size(const std::string &text) {
+    constexpr std::string_view units = "KMGT";
+    const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
+    const auto value = parse_number<double>(text.substr(0, end));
+    std::string unit = text.substr(end);
+    std::size_t power = 0;
+    if (!unit.empty() && units.find(unit[0]) != std::string_view::npos)
+        power = units.find(unit[0]) + 1;
+    const std::string behind = unit.substr(power > 0 ? 1 : 0);
+    if (!value || !(behind.empty() || behind == "B" || (power > 0 && behind == "iB")))
+        return std::nullopt;
+    const double bytes = std::ldexp(*value, 10 * static_cast<int>(power));
+    constexpr double most = 9e18;
+    if (!(bytes >= 1 && bytes <= most))
+        return std::nullopt;
+    return static_cast<std::uint64_t>(bytes);
+}
+
+std::string check_memory_size(const std::string &text) {
+    return parse_size(text) ? "" : fmt::format("'{}' is not a size such as 512M or 4G", text);
+}
+
 /// A check for CLI11: some text.
 CLI::Validator not_empty() {
     return {[](std::string &text) { return text.empty() ? "is empty" : ""; }, ""};
@@ -185,6 +208,7 @@ struct RawOptions {
     std::string light_samples = "auto";
     std::string strategy = "mis";
     std::string profile;
+    std::string max_memory;
     std::vector<std::string> generic;
     std::vector<std::string> defines;
     bool list_devices = false;
@@ -275,6 +299,11 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "single, or double: slow, to tell what rounding does (default: single)")
         ->type_name("NAME")
         ->check(one_of({"single", "double"}))
+    app.add_option("--max-memory", raw.max_memory,
+                   "Refuses scenes that need more, on host and device together, such as 4G\n"
+                   "(default: what the machine has)")
+        ->type_name("SIZE")
+        ->check(CLI::Validator(check_memory_size, ""))
         ->group(group);
     app.add_option("--kernel-dir", options.kernel_dir,
                    "Kernel sources instead of the built-in ones")
@@ -337,6 +366,8 @@ void finish_options(Options &options, const RawOptions &raw) {
                                                 : Strategy::mis;
     options.independent = raw.sampler == "independent";
     options.double_precision = raw.precision == "double";
+    if (!raw.max_memory.empty())
+        options.max_memory = parse_size(raw.max_memory);
     options.profile = !raw.profile.empty();
     if (raw.profile != bare_profile)
         options.profile_trace = raw.profile;

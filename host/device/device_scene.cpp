@@ -1,5 +1,6 @@
 #include "device_scene.h"
 
+#include "memory_limit.h"
 #include "upload.h"
 
 #include <algorithm>
@@ -57,6 +58,12 @@ void check_memory(const DeviceEntry &entry, const std::vector<View> &arrays,
         total += array.bytes;
         largest = std::max(largest, array.bytes);
     }
+    // The arrays lie on the host too.
+    const std::size_t everywhere = 2 * total - film_bytes;
+    if (everywhere > memory_limit())
+        throw InputError({"--max-memory", 0},
+                         fmt::format("the scene and the film need {} bytes, expected at most {}",
+                                     everywhere, memory_limit()));
     if (total > entry.memory_bytes)
         throw DeviceError(fmt::format("the scene and the film need {} bytes, but {} has {}", total,
                                       entry.name, entry.memory_bytes));
