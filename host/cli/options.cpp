@@ -299,6 +299,7 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "single, or double: slow, to tell what rounding does (default: single)")
         ->type_name("NAME")
         ->check(one_of({"single", "double"}))
+        ->group(group);
     app.add_option("--max-memory", raw.max_memory,
                    "Refuses scenes that need more, on host and device together, such as 4G\n"
                    "(default: what the machine has)")

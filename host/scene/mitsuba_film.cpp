@@ -5,6 +5,7 @@
 #include "mitsuba_text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace clrender::mitsuba {
 
@@ -35,6 +36,13 @@ void read_size(Properties &properties, FilmSettings &film) {
                                            std::to_string(film.height - film.crop_y));
 }
 
+void check_range(const Properties &properties, const std::string &name, double value, double lowest,
+                 double highest) {
+    if (!(value >= lowest && value <= highest))
+        properties.fail(name, fmt::format("is {:g}, expected a number from {:g} to {:g}", value,
+                                          lowest, highest));
+}
+
 } // namespace
 
 ReconstructionFilter read_filter(const Document &document, int object) {
@@ -49,15 +57,15 @@ ReconstructionFilter read_filter(const Document &document, int object) {
     filter.kind = static_cast<FilterKind>(type - types.begin());
     if (filter.kind == FilterKind::tent) {
         filter.radius = properties.number("radius", filter.radius);
-        if (!(filter.radius > 0))
-            properties.fail("radius", "is not positive, expected a number above 0");
+        check_range(properties, "radius", filter.radius, min_filter_size, max_filter_size);
     } else if (filter.kind == FilterKind::gaussian) {
         filter.stddev = properties.number("stddev", filter.stddev);
-        if (!(filter.stddev > 0))
-            properties.fail("stddev", "is not positive, expected a number above 0");
+        check_range(properties, "stddev", filter.stddev, min_filter_size, max_filter_size);
     } else if (filter.kind == FilterKind::mitchell) {
         filter.b = properties.number("B", filter.b);
         filter.c = properties.number("C", filter.c);
+        check_range(properties, "B", filter.b, -max_filter_parameter, max_filter_parameter);
+        check_range(properties, "C", filter.c, -max_filter_parameter, max_filter_parameter);
     } else if (filter.kind == FilterKind::lanczos) {
         filter.lobes = static_cast<int>(properties.integer("lobes", filter.lobes, 1, 64));
     }
