@@ -16,6 +16,7 @@
 #include <chrono>
 #include <exception>
 #include <fmt/core.h>
+#include <utility>
 
 using namespace clrender;
 
@@ -23,7 +24,7 @@ namespace {
 
 constexpr int exit_input = 2;
 constexpr int exit_device = 3;
-constexpr int exit_interrupted = 130;
+constexpr int exit_signal = 128; ///< plus the signal's number
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -71,14 +72,19 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
     r.profile = options.profile ? &profile : nullptr;
-    r.on_progress = [&](double paths) { progress.update(paths); };
-    r.should_stop = cli::interrupted;
+    r.band_rows = options.band_rows;
+    r.preview = options.preview;
+    r.on_progress = [&](double paths) {
+        cli::keep_picture();
+        progress.update(paths);
+    };
+    r.should_stop = [] { return cli::interrupted() != 0; };
     return r;
 }
 
-std::map<std::string, std::string> metadata(const cli::Options &options, const Scene &scene,
+std::map<std::string, std::string> metadata(const cli::Options &options, const std::string &scene,
                                             const RenderStats &stats) {
-    return {{"scene", scene.name},
+    return {{"scene", scene},
             {"samples", std::to_string(stats.spp)},
             {"seed", std::to_string(options.seed.value_or(0))},
             {"version", CLRENDER_VERSION},
@@ -86,6 +92,7 @@ std::map<std::string, std::string> metadata(const cli::Options &options, const S
 }
 
 int render_command(const cli::Options &options) {
+    cli::catch_interrupts();
     Profile profile;
     const auto start = profile.origin;
     Scene scene = load_scene(options.scene, {options.defines});
@@ -108,13 +115,13 @@ int render_command(const cli::Options &options) {
         return 0;
     }
 
-    cli::catch_interrupts();
-    const RenderResult result = render_scene(scene, how);
+    const std::string name = scene.name;
+    const RenderResult result = render_scene(std::move(scene), how);
     progress.finish();
 
     const auto write_start = std::chrono::steady_clock::now();
     for (const std::string &path : options.outputs)
-        write_image(path, result.image, options.exposure, metadata(options, scene, result.stats));
+        write_image(path, result.image, options.exposure, metadata(options, name, result.stats));
     times.write = seconds_since(write_start);
     profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
@@ -125,7 +132,7 @@ int render_command(const cli::Options &options) {
         fmt::print("{}", profile_table(profile));
     if (!options.profile_trace.empty())
         write_profile_trace(options.profile_trace, profile);
-    return result.interrupted ? exit_interrupted : 0;
+    return result.interrupted ? exit_signal + cli::interrupted() : 0;
 }
 
 int run(const cli::Options &options) {

@@ -516,7 +516,8 @@ CLR_INLINE Work tile_of_item(__global const FrameData *frame, uint index, uint c
 }
 
 /* Item i of the launch renders tile first_item + i of those of `colour` (CLR_ALL_TILES: of all),
-   the sample blocks [first_block, end_block). */
+   the sample blocks [first_block, end_block). The film holds the rows [film_row, film_end) of the
+   picture, all that the launch reaches, and item_counters those of the tiles from first_tile on. */
 __kernel void
 path_trace(__global const FrameData *frame, __global const Sphere *spheres,
            __global const SphereTest *sphere_tests, __global const Planar *planars,
@@ -532,7 +533,8 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
            __global const float *env_texels, __global const float *env_cdf,
            __global const uint *env_guide, __global const float *filter, __global FilmPixel *film,
            __global ItemCounters *item_counters PROFILE_BUFFER, uint first_item, uint item_count,
-           uint first_block, uint end_block, uint colour, uint stride) {
+           uint first_block, uint end_block, uint colour, uint stride, uint film_row, uint film_end,
+           uint first_tile) {
     if (get_global_id(0) >= item_count)
         return;
     PROFILE_BEGIN(counts);
@@ -548,7 +550,7 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
     const uint dealt = (uint)((ulong)get_global_id(0) * stride % item_count);
     Work work = tile_of_item(frame, first_item + dealt, colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;
-    const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE;
+    const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE - first_tile;
     ItemCounters counters = item_counters[tile];
     uint rays = 0;
     BlockSums block;
@@ -559,7 +561,8 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
         work.next_x = work.next_y = 0;
         block_clear(&block);
         render_block(&scene, work, &block, &rays, &counters);
-        film_add(&scene, film, work.x, work.y, work.end_sample - work.first_sample, &block);
+        film_add(&scene, film, work.x, work.y - (int)film_row, (int)(film_end - film_row),
+                 work.end_sample - work.first_sample, &block);
     }
     const uint low = counters.rays_low + rays;
     counters.rays_high += low < rays ? 1u : 0u;

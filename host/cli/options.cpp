@@ -35,7 +35,7 @@ constexpr const char *examples =
     "  clrender compare a.exr b.exr --tolerance 1e-3\n"
     "\n"
     "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device,\n"
-    "130 interrupted (the picture so far is written).\n";
+    "130 and 143 interrupted by SIGINT and SIGTERM (the picture so far is written).\n";
 
 /// Reads all of `text` as a number; nothing where there is anything else in it.
 template <class Number> std::optional<Number> parse_number(const std::string &text) {
@@ -316,6 +316,8 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
     // For the tests that a picture does not depend on how it is cut into launches; not in --help.
     app.add_option("--batch", options.batch)->check(whole_number(1, max_int))->group("");
     app.add_option("--tile", options.tile)->check(whole_number(1, max_int))->group("");
+    app.add_option("--band-rows", options.band_rows)->check(whole_number(1, max_int))->group("");
+    app.add_flag("--preview", options.preview)->group("");
 }
 
 CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {

@@ -56,6 +56,8 @@ struct Options {
     std::set<std::string> generality; ///< --generic, names of kernel_config.def
     int batch = 0;                    ///< samples of a pixel in one launch; 0: the program chooses
     int tile = 0;                     ///< pixel groups in one launch; 0: the program chooses
+    int band_rows = 0;                ///< rows of tiles in one band; 0: the program chooses
+    bool preview = false;             ///< a few samples of all pixels first, whatever the size
     CompareOptions compare;
 };
 

@@ -7,6 +7,8 @@
 
 #include <chrono>
 #include <fmt/core.h>
+#include <limits>
+#include <utility>
 
 namespace clrender {
 
@@ -41,31 +43,14 @@ FlattenOptions flatten_options(const RenderOptions &options) {
     return flatten_options;
 }
 
-} // namespace
-
-std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
-    FlatScene flat = flatten(scene, flatten_options(options));
-    build_hierarchy(flat);
-    int tile = CLR_LEAST_TILE;
-    try {
-        tile = tile_of(choose_device(options.device), flat.config);
-    } catch (const DeviceError &) {
-        // A scene can be checked where there is no device: it will be one like this.
-    }
-    return flat.bytes() + FilmExtent(flat.frame, static_cast<std::size_t>(tile)).bytes();
-}
-
-RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
+/// Compiles, uploads and renders; `flat` is all that is needed of the scene.
+RenderResult render_flat(FlatScene flat, const FilmSettings &film, int spp,
+                         const RenderOptions &options, const DeviceEntry &entry, Stopwatch &watch,
+                         double seconds_device) {
     RenderResult result;
     RenderStats &stats = result.stats;
-    Stopwatch watch(options.profile);
-    const DeviceEntry entry = choose_device(options.device);
     stats.device = entry.name;
-    stats.seconds_device = watch.lap("open the device");
-    log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
-
-    FlatScene flat = flatten(scene, flatten_options(options));
-    const int spp = options.spp > 0 ? options.spp : scene.sample_count;
+    stats.seconds_device = seconds_device;
     flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
     flat.config.TILE = tile_of(entry, flat.config);
     flat.config.SAMPLER = options.independent_sampler ? 1 : 0;
@@ -86,12 +71,23 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
     stats.seconds_build = watch.lap("build");
     tracer.compile(stats);
     stats.seconds_compile = watch.lap("compile");
+    // Before the upload, which frees the table.
+    std::vector<double> spread{1.0};
+    if (flat.config.BORDER > 0)
+        spread = filter_spread(flat.filter, double{flat.frame.filter_radius}, flat.config.BORDER);
     tracer.upload(stats);
     stats.seconds_upload = watch.lap("upload");
-    result.interrupted = tracer.render(spp);
-    stats.seconds_render = watch.lap("render");
-    tracer.read(result, scene.film.pixel_format);
-    watch.lap("read");
+    Picture picture(tiles_of(flat), film.pixel_format, options.with_variance,
+                    flat.frame.film_exponent, std::move(spread));
+    result.interrupted = tracer.render(spp, picture, stats);
+    stats.seconds_render = watch.lap("render") - tracer.seconds_read();
+    if (result.interrupted)
+        result.gaps = picture.fill_gaps();
+    stats.clamped_pixels = picture.clamped.count;
+    stats.clamped_x = static_cast<int>(picture.clamped.first % flat.frame.width);
+    stats.clamped_y = static_cast<int>(picture.clamped.first / flat.frame.width);
+    result.image = std::move(picture.image);
+    result.variance = std::move(picture.variance);
     if (options.profile != nullptr) {
         tracer.complete_profile(stats);
         watch.lap("measure peak");
@@ -105,6 +101,40 @@ RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
                               "first is ({}, {})",
                               stats.clamped_pixels, stats.clamped_x, stats.clamped_y));
     return result;
+}
+
+} // namespace
+
+std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
+    FlatScene flat = flatten(scene, flatten_options(options));
+    build_hierarchy(flat);
+    flat.config.TILE = CLR_LEAST_TILE;
+    DeviceEntry entry;
+    try {
+        entry = choose_device(options.device);
+        flat.config.TILE = tile_of(entry, flat.config);
+    } catch (const DeviceError &) {
+        // A scene can be checked where there is no device: it will be one like this, and large.
+        entry.max_allocation_bytes = entry.memory_bytes = std::numeric_limits<std::size_t>::max();
+    }
+    return flat.bytes() + band_bytes(tiles_of(flat), bands_of(entry, flat, options).front());
+}
+
+RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
+    Scene copy = scene;
+    return render_scene(std::move(copy), options);
+}
+
+RenderResult render_scene(Scene &&scene, const RenderOptions &options) {
+    Stopwatch watch(options.profile);
+    const DeviceEntry entry = choose_device(options.device);
+    const double seconds_device = watch.lap("open the device");
+    log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
+    const int spp = options.spp > 0 ? options.spp : scene.sample_count;
+    const FilmSettings film = scene.film;
+    FlatScene flat = flatten(scene, flatten_options(options));
+    scene = {};
+    return render_flat(std::move(flat), film, spp, options, entry, watch, seconds_device);
 }
 
 } // namespace clrender

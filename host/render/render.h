@@ -26,6 +26,9 @@ struct RenderOptions {
                                       ///< of 2; 0: chosen
     int batch = 0;                    ///< blocks of samples in one launch; 0: chosen
     int tile = 0;                     ///< work-items in one launch; 0: chosen
+    int band_rows = 0;                ///< rows of tiles in one band; 0: chosen
+    bool preview = false;             ///< a few samples of all pixels first, however fast
+    bool with_variance = false;       ///< RenderResult::variance is wanted
     std::set<std::string> generality; ///< as FlattenOptions::generality
     std::string kernel_dir;           ///< kernel sources in place of the embedded ones
     Profile *profile = nullptr;       ///< filled where given, with a kernel that counts
@@ -53,13 +56,14 @@ struct RenderStats {
     int clamped_x = 0, clamped_y = 0;     ///< the first of them
 };
 
-/// `image` has the channels of the film's pixel format; `variance` has as many and holds the
-/// estimated variance of each pixel's mean (of luminance: an upper bound).
+/// `image` has the channels of the film's pixel format; `variance`, where it is wanted, has as many
+/// and holds the estimated variance of each pixel's mean (of luminance: an upper bound).
 struct RenderResult {
     Image image;
     Image variance;
     RenderStats stats;
     bool interrupted = false;
+    std::size_t gaps = 0; ///< pixels without a sample, which show their neighbours
 };
 
 /// Bytes that rendering the scene takes on a device: what is uploaded, and the film. Needs no
@@ -68,5 +72,8 @@ std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options
 
 /// Flattens, compiles, uploads and renders. Throws DeviceError.
 RenderResult render_scene(const Scene &scene, const RenderOptions &options = {});
+
+/// The same, and frees the shapes and images of the scene as soon as they are flattened.
+RenderResult render_scene(Scene &&scene, const RenderOptions &options = {});
 
 } // namespace clrender
