@@ -28,7 +28,7 @@ constexpr cl_uint launch_numbers = 9;
 
 /// The sums of a picture stay in one piece up to this share of the device's memory; beyond, bands
 /// need not be large to be fast.
-constexpr std::size_t film_share = 8;
+constexpr std::size_t film_share = 4;
 constexpr std::size_t largest_band = std::size_t{512} << 20;
 
 /// Where the first pass is expected to take longer, all pixels get a sample or a few before it, as
