@@ -219,7 +219,8 @@ LaunchPlan PathTracer::plan_of(const Band &band, int spp) {
             spp,
             flat_.config.FILTER == 3,
             pace_,
-            static_cast<std::size_t>(options_.tile), options_.batch};
+            static_cast<std::size_t>(options_.tile),
+            options_.batch};
 }
 
 void PathTracer::take(Picture &picture, const Band &band, const LaunchPlan &plan) {

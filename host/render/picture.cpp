@@ -55,8 +55,8 @@ void copy_pixels(Image &part, std::size_t part_row, std::size_t first, std::size
 
 Picture::Picture(const PictureTiles &tiles, PixelFormat format, bool with_variance, int exponent,
                  std::vector<double> spread)
-    : image(black(tiles, channels_of(format))), tiles_(tiles), format_(format),
-      exponent_(exponent), spread_(std::move(spread)), rows_(tiles.rows()) {
+    : image(black(tiles, channels_of(format))), tiles_(tiles), format_(format), exponent_(exponent),
+      spread_(std::move(spread)), rows_(tiles.rows()) {
     if (with_variance)
         variance = black(tiles, channels_of(format));
 }

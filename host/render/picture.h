@@ -52,8 +52,7 @@ private:
 
     void take_rows(const Film &film, std::size_t film_row, std::size_t first, std::size_t end,
                    const Band &band, const LaunchPlan &plan);
-    void count_clamped(const std::vector<FilmPixel> &pixels, std::size_t film_row,
-                       std::size_t end);
+    void count_clamped(const std::vector<FilmPixel> &pixels, std::size_t film_row, std::size_t end);
     void mark(const Band &band, const LaunchPlan &plan);
     std::size_t fill_row(std::size_t row, const Tiles &tiles);
 
