@@ -30,7 +30,7 @@ static inline int stack_closest(__global const BvhNode *nodes,
                                 __global const TriangleBlock *triangles,
                                 __global const SphereBlock *spheres, const BvhRay *ray,
                                 BvhHit *result) {
-    BvhHit hit = {bvh_float_below(result->t), 0.0f, 0.0f, BVH_NO_PRIM, 0u};
+    BvhHit hit = {scalar_below(result->t), 0.0f, 0.0f, BVH_NO_PRIM, 0u};
     uint children[STACK_SIZE];
     float entries[STACK_SIZE];
     children[0] = bvh_child(BVH_CHILD_INNER, 0u);
@@ -60,7 +60,7 @@ static inline int stack_closest(__global const BvhNode *nodes,
 /* As bvh_any. */
 static inline int stack_any(__global const BvhNode *nodes, __global const TriangleBlock *triangles,
                             __global const SphereBlock *spheres, const BvhRay *ray, float t_max) {
-    const float t_end = bvh_float_below(t_max);
+    const float t_end = scalar_below(t_max);
     uint children[STACK_SIZE];
     children[0] = bvh_child(BVH_CHILD_INNER, 0u);
     uint top = 1u;

@@ -54,6 +54,14 @@ typedef struct {
     mask_l pending;
     real weight; /* the camera ray's */
     real dx, dy;
+#if HAS_FAR_CAMERA
+    mask_l on_first_leg; /* camera rays that have not yet reached `start` */
+    vec3 start;
+    real start_t_max;
+#endif
+#if INTEGRATOR == 1
+    real skipped; /* CameraRay::skipped */
+#endif
     uint rays; /* of all lanes together */
 } Paths;
 
@@ -122,6 +130,13 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     ray.o = v3_mad(ray.d, ray.t_near, ray.o);
     ray.t_far -= ray.t_near;
 #endif
+#if HAS_FAR_CAMERA
+    p->on_first_leg |= fresh;
+    p->start = v3_pick(fresh, ray.o, p->start);
+    p->start_t_max = pick(fresh, ray.t_far, p->start_t_max);
+    ray.o = ray.leg_o;
+    ray.t_far = ray.leg_far;
+#endif
     p->alive |= fresh;
     p->first |= fresh;
     p->pending |= fresh;
@@ -137,6 +152,9 @@ CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
     p->dy = pick(fresh, ray.dy, p->dy);
 #endif
     p->radiance = v3_pick(fresh, v3_of(0.0f, 0.0f, 0.0f), p->radiance);
+#if INTEGRATOR == 1
+    p->skipped = pick(fresh, ray.skipped, p->skipped);
+#endif
 #if HAS_ALPHA
     p->alpha = pick(fresh, ray.weight * f->env_alpha, p->alpha);
 #endif
@@ -186,13 +204,13 @@ CLR_INLINE void paths_finish(const SceneData *scene, Paths *p, const Work *work,
     }
 #endif
     float r[LANES], g[LANES], b[LANES], alpha[LANES], weight[LANES], dx[LANES], dy[LANES];
-    store_real(radiance.x, r);
-    store_real(radiance.y, g);
-    store_real(radiance.z, b);
-    store_real(p->alpha, alpha);
-    store_real(p->weight, weight);
-    store_real(p->dx, dx);
-    store_real(p->dy, dy);
+    store_float(radiance.x, r);
+    store_float(radiance.y, g);
+    store_float(radiance.z, b);
+    store_float(p->alpha, alpha);
+    store_float(p->weight, weight);
+    store_float(p->dx, dx);
+    store_float(p->dy, dy);
     for_each_lane(i, lanes) {
         FilmSample s = {r[i], g[i], b[i], alpha[i], weight[i], dx[i], dy[i]};
         block_add_sample(scene, block, pixel[i] % TILE, pixel[i] / TILE, s);
@@ -312,7 +330,7 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
     if (!any_lane(late))
         return;
     vec3 size = v3(fabs(p->throughput.x), fabs(p->throughput.y), fabs(p->throughput.z));
-    real survival = min(v3_max(size) * p->eta2, real_of(0.95f));
+    real survival = min(v3_max(size) * p->eta2, real_of(CLR_REAL(0.95)));
     real u = sampler_get(p->sampler, BOUNCE_ROULETTE);
     p->throughput = v3_pick(late, v3_scale(p->throughput, 1.0f / survival), p->throughput);
     p->alive &= ~late | lt(u, survival);
@@ -320,7 +338,7 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
 #endif
 
 /* Where a ray ends: only camera rays may be clipped. */
-#if HAS_CLIP || INTEGRATOR == 1
+#if HAS_CLIP || HAS_FAR_CAMERA || INTEGRATOR == 1
 #define CLIP_END(p) ((p)->t_max)
 #else
 #define CLIP_END(p) real_of(INFINITY)
@@ -349,7 +367,7 @@ CLR_INLINE mask_l paths_final(const SceneData *scene, const Paths *p, Surface su
 #if FINAL_BY_LIGHTS
     /* Close to the light, where it looks large, the ray that could meet it is worth tracing. */
     __global const FrameData *f = scene->frame;
-    __global const float *light = scene->lights->position;
+    __global const clr_real *light = scene->lights->position;
     vec3 to_light = v3_sub(v3_of(light[0], light[1], light[2]), surface.p);
     return diffuse & ige(p->depth, int_of(f->max_depth - 2)) &
            gt(v3_dot(to_light, to_light), real_of(f->final_distance2));
@@ -429,22 +447,29 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     PROFILE_ADD(scene->counts, PROFILE_STEPS, 1u);
     Hit hit = scene_closest(scene, p->o, p->d, p->self, CLIP_END(p), p->alive);
     mask_l met = p->alive & ige(hit.prim, int_of(0));
-#if HAS_CLIP || INTEGRATOR == 1
+#if HAS_CLIP || HAS_FAR_CAMERA || INTEGRATOR == 1
     p->t_max = real_of(INFINITY);
+#endif
+    mask_l restarted = no_lanes();
+#if HAS_FAR_CAMERA
+    restarted = p->alive & ~met & p->on_first_leg;
+    p->on_first_leg &= ~p->alive;
+    p->o = v3_pick(restarted, p->start, p->o);
+    p->t_max = pick(restarted, p->start_t_max, p->t_max);
 #endif
 
 #if INTEGRATOR == 1
     /* The depth is measured from the near clip plane, as in Mitsuba. */
-    real distance = hit.t * scene->frame->length_unit;
+    real distance = (hit.t + p->skipped) * scene->frame->length_unit;
     p->radiance = v3_pick(met, v3_scale(p->throughput, distance), p->radiance);
     p->alpha = pick(met, p->throughput.x, p->alpha);
     p->alive = no_lanes();
 #else
 
 #if ENVIRONMENT
-    paths_add_environment(scene, p, p->alive & ~met);
+    paths_add_environment(scene, p, p->alive & ~met & ~restarted);
 #endif
-    p->alive = met;
+    p->alive = met | restarted;
     if (!any_lane(met))
         return;
     Surface surface = surface_at(scene, p->o, p->d, hit, met);
@@ -464,7 +489,7 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     int_l material = material_of_side(surface.materials, lt(cosine, real_of(0.0f)));
     mask_l going = met & ilt(p->depth, int_of(scene->frame->max_depth - 1)) &
                    ~ieq(material, int_of((int)CLR_NO_MATERIAL)) & gt(fabs(cosine), real_of(0.0f));
-    p->alive = going | through;
+    p->alive = going | through | restarted;
     if (any_lane(going))
         paths_scatter(scene, p, surface, hit.prim, material, cosine, going, through);
 #endif
@@ -482,6 +507,14 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);
+#if HAS_FAR_CAMERA
+    p.on_first_leg = no_lanes();
+    p.start = p.o;
+    p.start_t_max = p.t_max;
+#endif
+#if INTEGRATOR == 1
+    p.skipped = p.t_max;
+#endif
     int idle_steps = 0, busy_steps = 0;
     for (;;) {
         const int idle = LANES - count_lanes(p.alive);
@@ -523,15 +556,16 @@ path_trace(__global const FrameData *frame, __global const Sphere *spheres,
            __global const SphereTest *sphere_tests, __global const Planar *planars,
            __global const PrimitiveRecord *records, __global const BvhNode *nodes,
            __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
-           __global const uint *triangles, __global const float *normals, __global const float *uvs,
-           __global const uint *shape_of, __global const ShapeInfo *shapes,
-           __global const float *shape_frames, __global const Material *materials,
-           __global const EmitterInfo *emitters, __global const Light *lights,
-           __global const LightTriangle *light_triangles, __global const LightNode *light_nodes,
-           __global const TextureInfo *textures, __global const uint *texels_u8,
-           __global const float *texels_f32, __global const float *decode,
-           __global const float *env_texels, __global const float *env_cdf,
-           __global const uint *env_guide, __global const float *filter, __global FilmPixel *film,
+           __global const uint *triangles, __global const clr_real *normals,
+           __global const clr_real *uvs, __global const uint *shape_of,
+           __global const ShapeInfo *shapes, __global const clr_real *shape_frames,
+           __global const Material *materials, __global const EmitterInfo *emitters,
+           __global const Light *lights, __global const LightTriangle *light_triangles,
+           __global const LightNode *light_nodes, __global const TextureInfo *textures,
+           __global const uint *texels_u8, __global const clr_real *texels_f32,
+           __global const clr_real *decode, __global const clr_real *env_texels,
+           __global const clr_real *env_cdf, __global const uint *env_guide,
+           __global const clr_real *filter, __global FilmPixel *film,
            __global ItemCounters *item_counters PROFILE_BUFFER, uint first_item, uint item_count,
            uint first_block, uint end_block, uint colour, uint stride, uint film_row, uint film_end,
            uint first_tile) {

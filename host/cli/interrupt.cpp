@@ -49,4 +49,9 @@ int interrupted() {
     return received;
 }
 
+void ignore_write_signals() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
 } // namespace clrender::cli

@@ -15,4 +15,8 @@ void keep_picture();
 /// The signal that has set the flag, or 0.
 int interrupted();
 
+/// A file that grows beyond what the system allows, or a pipe that nobody reads, fails the write
+/// and not the process: the other files are still to be written.
+void ignore_write_signals();
+
 } // namespace clrender::cli

@@ -43,9 +43,11 @@ struct Options {
     double exposure = 0; ///< stops, for the 8-bit formats
     bool pixel_centers = false;
     Accel accel = Accel::bvh;
-    bool independent = false; ///< --sampler independent
-    int light_samples = 0;    ///< 1, 2, 4, 8 or 16; 0: what suits the scene
+    bool independent = false;      ///< --sampler independent
+    bool double_precision = false; ///< --precision double
+    int light_samples = 0;         ///< 1, 2, 4, 8 or 16; 0: what suits the scene
     Strategy strategy = Strategy::mis;
+    std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together
     bool check = false;
     std::string stats;         ///< JSON file, or empty
     bool profile = false;      ///< print the table

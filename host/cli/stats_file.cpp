@@ -1,8 +1,9 @@
 #include "stats_file.h"
 
+#include "output_file.h"
+
 #include <algorithm>
 #include <fmt/core.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace clrender::cli {
@@ -47,11 +48,7 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
         {"clamped_pixels", stats.clamped_pixels},
         {"pixels_without_samples", result.gaps},
     };
-    std::ofstream file(path);
-    file << json.dump(2) << '\n';
-    file.close();
-    if (!file)
-        throw InputError({path, 0}, "the statistics cannot be written");
+    write_output_file(path, json.dump(2) + '\n');
 }
 
 std::string summary(const RenderResult &result, const RunTimes &times,
@@ -68,7 +65,9 @@ std::string summary(const RenderResult &result, const RunTimes &times,
                                        100 * static_cast<double>(result.gaps) / pixels);
     return fmt::format("{}{}: {}x{}, {:.4g} samples a pixel, {:.2f} s ({:.2f} Mpaths/s on {}, {} "
                        "lanes; {:.2f} s in all){}",
-                       result.interrupted ? "interrupted; the picture so far is in " : "wrote ",
+                       files.empty()        ? "rendered"
+                       : result.interrupted ? "interrupted; the picture so far is in "
+                                            : "wrote ",
                        files, s.width, s.height, s.paths / pixels, s.seconds_render,
                        per_second(s.paths, s.seconds_render) * 1e-6, s.device, s.lanes, times.total,
                        gaps);

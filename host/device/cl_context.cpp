@@ -50,6 +50,8 @@ DeviceEntry describe(const cl::Device &device, const cl::Platform &platform, int
     entry.is_gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
     entry.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
     entry.native_width = static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>());
+    entry.has_double =
+        device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     entry.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     entry.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     return entry;

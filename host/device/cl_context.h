@@ -19,7 +19,8 @@ struct DeviceEntry {
     bool is_cpu = false;
     bool is_gpu = false;
     int compute_units = 0;
-    int native_width = 1; ///< floats in a register
+    int native_width = 1;    ///< floats in a register
+    bool has_double = false; ///< kernels may compute in double precision
     std::size_t memory_bytes = 0;
     std::size_t max_allocation_bytes = 0;
 };

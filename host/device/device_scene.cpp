@@ -1,5 +1,6 @@
 #include "device_scene.h"
 
+#include "memory_limit.h"
 #include "upload.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <fmt/core.h>
 #include <type_traits>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -33,6 +34,10 @@ void check_memory(const DeviceEntry &entry, FlatScene &flat, std::size_t film_by
         total += bytes_of(array);
         largest = std::max(largest, bytes_of(array));
     });
+    if (total > memory_limit())
+        throw InputError({"--max-memory", 0},
+                         fmt::format("the scene and the film need {} bytes, expected at most {}",
+                                     total, memory_limit()));
     if (total > entry.memory_bytes)
         throw DeviceError(fmt::format("the scene and the film need {} bytes, but {} has {}", total,
                                       entry.name, entry.memory_bytes));
@@ -74,4 +79,4 @@ cl_uint DeviceScene::bind(cl::Kernel &kernel) const {
     return index;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

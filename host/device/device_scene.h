@@ -4,7 +4,7 @@
 #include "cl_context.h"
 #include "flatten/flat_scene.h"
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 class DeviceScene {
 public:
@@ -27,4 +27,4 @@ private:
     std::size_t bytes_ = 0;
 };
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

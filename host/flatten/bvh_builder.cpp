@@ -10,7 +10,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace bvh {
 
@@ -28,14 +28,14 @@ constexpr std::uint32_t kParallelBinning = 1 << 17;
 constexpr int kBalancedFrom = 64;
 
 /// Twice the middle of a box; the factor does not matter to the order.
-float doubled_centroid(const Primitive &p, int axis) {
+clr_real doubled_centroid(const Primitive &p, int axis) {
     return p.lower[axis] + p.upper[axis];
 }
 
 /// Blocks that so many primitives fill.
-float blocks_of(std::uint32_t count) {
+clr_real blocks_of(std::uint32_t count) {
     const std::uint32_t blocks = (count + BVH_WIDTH - 1) / BVH_WIDTH;
-    return float(blocks);
+    return clr_real(blocks);
 }
 
 struct Bin {
@@ -66,8 +66,8 @@ public:
         : bin_count_(int(std::min<std::uint32_t>(kBins, kFewestBins + count / BVH_WIDTH))),
           origin_(centroids.lower) {
         for (int axis = 0; axis < 3; ++axis) {
-            const float extent = centroids.upper[axis] - centroids.lower[axis];
-            scale_[axis] = float(bin_count_) * 0.9999f / extent;
+            const clr_real extent = centroids.upper[axis] - centroids.lower[axis];
+            scale_[axis] = clr_real(bin_count_) * 0.9999f / extent;
             // A range so small that its reciprocal overflows counts as flat.
             flat_[axis] = !(extent > 0.0f) || !std::isfinite(scale_[axis]);
             if (flat_[axis]) {
@@ -78,7 +78,7 @@ public:
     }
 
     [[nodiscard]] int bin_of(const Primitive &p, int axis) const {
-        const float position = (doubled_centroid(p, axis) - origin_[axis]) * scale_[axis];
+        const clr_real position = (doubled_centroid(p, axis) - origin_[axis]) * scale_[axis];
         return std::min(int(position), bin_count_ - 1);
     }
 
@@ -105,11 +105,11 @@ public:
     struct Split {
         int axis = -1; ///< -1: all centroids coincide
         int bin = 0;   ///< first bin of the right side
-        float cost = std::numeric_limits<float>::infinity();
+        clr_real cost = std::numeric_limits<clr_real>::infinity();
     };
 
     /// `scale` is the reciprocal of the tree's size.
-    [[nodiscard]] Split cheapest_split(float scale) const {
+    [[nodiscard]] Split cheapest_split(clr_real scale) const {
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
             if (!flat_[axis]) {
@@ -121,8 +121,8 @@ public:
 
 private:
     /// Surface area heuristic: area times blocks on either side, for each border between two bins.
-    void search_axis(int axis, float scale, Split &best) const {
-        std::array<float, kBins> right_cost;
+    void search_axis(int axis, clr_real scale, Split &best) const {
+        std::array<clr_real, kBins> right_cost;
         std::array<std::uint32_t, kBins> right_count;
         Bin right;
         for (int i = bin_count_ - 1; i > 0; --i) {
@@ -135,7 +135,7 @@ private:
         for (int i = 1; i < bin_count_; ++i) {
             left.box.grow(bins_[axis][i - 1].box);
             left.count += bins_[axis][i - 1].count;
-            const float cost = left.box.half_area(scale) * blocks_of(left.count) + right_cost[i];
+            const clr_real cost = left.box.half_area(scale) * blocks_of(left.count) + right_cost[i];
             if (left.count > 0 && right_count[i] > 0 && cost < best.cost) {
                 best = {axis, i, cost};
             }
@@ -177,7 +177,7 @@ public:
           nodes_(2 * primitives.size()) {
         const Bounds bounds = reduce(std::span<const Primitive>(primitives), Bounds{}, parallel);
         const Point size = bounds.box.upper - bounds.box.lower;
-        const float largest = std::max({size[0], size[1], size[2]});
+        const clr_real largest = std::max({size[0], size[1], size[2]});
         scale_ = largest > 0.0f ? std::min(1.0f / largest, kLargestScale) : 1.0f;
         build(0, {0, std::uint32_t(primitives.size()), bounds}, 0);
     }
@@ -188,7 +188,7 @@ public:
 
 private:
     /// Or the scale of a tree without extent would be infinite.
-    static constexpr float kLargestScale = 1e30f;
+    static constexpr clr_real kLargestScale = 1e30f;
 
     struct Part {
         std::uint32_t begin, count;
@@ -255,8 +255,8 @@ private:
         const std::uint32_t half = part.count / 2;
         std::nth_element(range.begin(), range.begin() + half, range.end(),
                          [axis](const Primitive &a, const Primitive &b) {
-                             const float ca = doubled_centroid(a, axis);
-                             const float cb = doubled_centroid(b, axis);
+                             const clr_real ca = doubled_centroid(a, axis);
+                             const clr_real cb = doubled_centroid(b, axis);
                              return ca < cb || (ca == cb && a.index < b.index);
                          });
         const auto bounds_of = [&](std::span<const Primitive> primitives) {
@@ -270,20 +270,20 @@ private:
     std::span<Primitive> primitives_;
     bool parallel_;
     LargeArray<BinaryNode> nodes_;
-    float scale_ = 1.0f;
+    clr_real scale_ = 1.0f;
     std::atomic<std::uint32_t> next_node_{1};
 };
 
 /// NaN rule: a comparison with NaN is false, so a coordinate that is no number is out of range.
-bool in_range(const glm::vec3 &p) {
+bool in_range(const Vec3 &p) {
     return std::abs(p.x) <= BVH_COORDINATE_LIMIT && std::abs(p.y) <= BVH_COORDINATE_LIMIT &&
            std::abs(p.z) <= BVH_COORDINATE_LIMIT;
 }
 
-/// A triangle whose corners lie on one line is met by no ray. The product is taken in double, where
-/// it is exact enough for float32 corners.
-bool has_area(const std::array<glm::vec3, 3> &t) {
-    using Vector = glm::vec<3, double, glm::defaultp>;
+/// A triangle whose corners lie on one line is met by no ray. The product is taken where it
+/// is exact enough for the corners.
+bool has_area(const std::array<Vec3, 3> &t) {
+    using Vector = glm::vec<3, WideReal, glm::defaultp>;
     const Vector a = Vector(t[1]) - Vector(t[0]);
     const Vector b = Vector(t[2]) - Vector(t[0]);
     return a.y * b.z != a.z * b.y || a.z * b.x != a.x * b.z || a.x * b.y != a.y * b.x;
@@ -302,9 +302,9 @@ bool make_primitive(const Input &input, std::size_t index, Primitive &primitive)
     }
     const BvhSphere &s = input.spheres[index - input.triangles.size()];
     // The sums round to nearest; one step outwards makes the box contain the sphere.
-    const float radius = std::nextafter(s.radius, BVH_COORDINATE_LIMIT);
-    const glm::vec3 lower = s.center - radius;
-    const glm::vec3 upper = s.center + radius;
+    const clr_real radius = std::nextafter(s.radius, BVH_COORDINATE_LIMIT);
+    const Vec3 lower = s.center - radius;
+    const Vec3 upper = s.center + radius;
     for (int axis = 0; axis < 3; ++axis) {
         box.lower[axis] = std::nextafter(lower[axis], -BVH_COORDINATE_LIMIT);
         box.upper[axis] = std::nextafter(upper[axis], BVH_COORDINATE_LIMIT);
@@ -341,8 +341,8 @@ std::size_t usable_primitives(const Input &input, bool parallel, std::span<Primi
 } // namespace
 } // namespace bvh
 
-Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles,
-              std::span<const BvhSphere> spheres, const BvhOptions &options) {
+Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles, std::span<const BvhSphere> spheres,
+              const BvhOptions &options) {
     const bvh::Input input{triangles, spheres};
     bvh::LargeArray<bvh::Primitive> storage(triangles.size() + spheres.size());
     const std::span<bvh::Primitive> all(storage.data(), triangles.size() + spheres.size());
@@ -361,4 +361,4 @@ Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles,
     return result;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -1,28 +1,28 @@
 #pragma once
 /// Builds the 8-wide bounding volume hierarchy that kernels/bvh.clh walks.
 
+#include "flatten/real.h"
 #include "shared/bvh.h"
 
 #include <array>
 #include <cstddef>
-#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// A sphere of the tree; `prim` is the id that a hit reports.
 struct BvhSphere {
-    glm::vec3 center{0.0f};
-    float radius = 0.0f;
+    Vec3 center{0.0f};
+    clr_real radius = 0.0f;
     uint prim = BVH_NO_PRIM;
 };
 
 /// What the search for a cheap tree believes, in units of one node visit.
 struct BvhOptions {
-    float node_cost = 1.0f;
+    clr_real node_cost = 1.0f;
     /// One block of eight triangles or spheres, whether full or not.
-    float block_cost = 1.0f;
+    clr_real block_cost = 1.0f;
     /// Levels of inner nodes, 1 to BVH_MAX_LEVELS.
     int max_levels = BVH_MAX_LEVELS;
     /// False builds on the calling thread alone; the tree is the same.
@@ -46,14 +46,14 @@ struct Bvh {
     double cost = 0.0;
 };
 
-/// Triangle i has prim id i. Coordinates are float32, already recentred and scaled by the caller.
+/// Triangle i has prim id i. Coordinates are already recentred and scaled by the caller.
 /// Binned SAH (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), which
 /// counts blocks in place of primitives, down to what one block holds; then the cheapest 8-wide
 /// tree found by dynamic programming (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on
 /// GPUs through compressed wide BVHs", 2017, section 3.1). The same input gives the same tree on
 /// any number of threads.
-[[nodiscard]] Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles,
+[[nodiscard]] Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
                             std::span<const BvhSphere> spheres = {},
                             const BvhOptions &options = {});
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

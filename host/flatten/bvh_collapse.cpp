@@ -5,14 +5,14 @@
 #include <cmath>
 #include <tbb/parallel_for.h>
 
-namespace clrender::bvh {
+namespace clrender::inline CLR_PRECISION::bvh {
 
 namespace {
 
 constexpr int kWidth = BVH_WIDTH;
 constexpr std::uint32_t kParallelNode = 4096;
 /// The reciprocal of anything smaller is not finite, or nearly so.
-constexpr float kTiny = 1e-30f;
+constexpr clr_real kTiny = 1e-30f;
 
 /// What one child of a wide node stands for: primitives [begin, begin + count), and the binary node
 /// that holds exactly them, where there is one.
@@ -38,7 +38,7 @@ struct Parts {
 /// Ylitie et al. 2017, section 3.1: C(n, 1) = block or inner node, C(n, i) = min over k of
 /// C(left, k) + C(right, i - k), or C(n, i - 1) when more children do not pay.
 struct Choice {
-    std::array<float, kWidth - 1> cost;          ///< [i - 1]: with i children
+    std::array<clr_real, kWidth - 1> cost;       ///< [i - 1]: with i children
     std::array<std::uint8_t, kWidth - 1> levels; ///< [i - 1]: of inner nodes, at and below them
     std::array<std::uint8_t, kWidth> left_share; ///< [i - 1]: k; 0: as with i - 1 children
 };
@@ -51,9 +51,9 @@ public:
           choices_(binary.size()) {
         if (!binary.empty()) {
             const Point size = binary[0].box.upper - binary[0].box.lower;
-            const float largest = std::max({size[0], size[1], size[2]});
+            const clr_real largest = std::max({size[0], size[1], size[2]});
             scale_ = largest > kTiny ? 1.0f / largest : 1.0f;
-            const float area = binary[0].box.half_area(scale_);
+            const clr_real area = binary[0].box.half_area(scale_);
             area_scale_ = area > kTiny ? 1.0f / area : 1.0f;
         }
     }
@@ -67,10 +67,6 @@ public:
         }
         bvh_.nodes.reserve(primitives_.size() / 24 + 1);
         emit_node(root, 0, 1);
-        const float extent = largest_coordinate();
-        for (BvhNode &node : bvh_.nodes) {
-            node.extent = extent;
-        }
         bound_root();
         fill_blocks();
     }
@@ -108,7 +104,7 @@ private:
         choice.cost[0] = area(index) * options_.node_cost + cheapest_share(index, kWidth);
         choice.levels[0] = std::uint8_t(std::min(254, levels_of_share(index, kWidth)) + 1);
         for (int children = 2; children < kWidth; ++children) {
-            const float shared = cheapest_share(index, children);
+            const clr_real shared = cheapest_share(index, children);
             if (choice.cost[children - 2] <= shared) {
                 choice.left_share[children - 1] = 0;
                 choice.cost[children - 1] = choice.cost[children - 2];
@@ -121,15 +117,15 @@ private:
     }
 
     /// min over k of C(left, k) + C(right, children - k); k is noted in left_share.
-    float cheapest_share(std::uint32_t index, int children) {
+    clr_real cheapest_share(std::uint32_t index, int children) {
         const std::uint32_t left = binary_[index].first_child;
         const auto &a = choices_[left].cost;
         const auto &b = choices_[left + 1].cost;
-        float best = std::numeric_limits<float>::infinity();
+        clr_real best = std::numeric_limits<clr_real>::infinity();
         std::uint8_t &share = choices_[index].left_share[children - 1];
         share = 1;
         for (int k = 1; k < children; ++k) {
-            const float cost = a[k - 1] + b[children - k - 1];
+            const clr_real cost = a[k - 1] + b[children - k - 1];
             if (cost < best) {
                 best = cost;
                 share = std::uint8_t(k);
@@ -146,15 +142,15 @@ private:
     }
 
     /// Relative to the root's area: the chance that a ray through the root meets this box too.
-    [[nodiscard]] float area(std::uint32_t index) const {
+    [[nodiscard]] clr_real area(std::uint32_t index) const {
         return binary_[index].box.half_area(scale_) * area_scale_;
     }
 
-    [[nodiscard]] float leaf_cost(std::uint32_t index) const {
+    [[nodiscard]] clr_real leaf_cost(std::uint32_t index) const {
         return area(index) * options_.block_cost;
     }
 
-    [[nodiscard]] float root_cost() const {
+    [[nodiscard]] clr_real root_cost() const {
         return binary_[0].is_leaf() ? area(0) * (options_.node_cost + options_.block_cost)
                                     : choices_[0].cost[0];
     }
@@ -289,10 +285,15 @@ private:
         return node;
     }
 
+    /// The box, widened by what the tests of rays lose to rounding.
     static void set_box(BvhNode &node, int slot, const Box &box) {
+        float largest = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            node.planes[BVH_PLANE_LOWER + axis][slot] = box.lower[axis];
-            node.planes[BVH_PLANE_UPPER + axis][slot] = box.upper[axis];
+            largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            node.planes[BVH_PLANE_LOWER + axis][slot] = box.lower[axis] - BVH_WIDEN * largest;
+            node.planes[BVH_PLANE_UPPER + axis][slot] = box.upper[axis] + BVH_WIDEN * largest;
         }
     }
 
@@ -365,18 +366,6 @@ private:
         }
     }
 
-    [[nodiscard]] float largest_coordinate() const {
-        if (binary_.empty()) {
-            return 0.0f;
-        }
-        float largest = 0.0f;
-        for (int axis = 0; axis < 3; ++axis) {
-            largest = std::max({largest, std::abs(binary_[0].box.lower[axis]),
-                                std::abs(binary_[0].box.upper[axis])});
-        }
-        return largest;
-    }
-
     const Input &input_;
     std::span<const Primitive> primitives_;
     std::span<const BinaryNode> binary_;
@@ -384,8 +373,8 @@ private:
     Bvh &bvh_;
     LargeArray<Choice> choices_;
     std::vector<Run> triangle_runs_, sphere_runs_;
-    float scale_ = 1.0f; ///< of lengths, see Box::half_area
-    float area_scale_ = 1.0f;
+    clr_real scale_ = 1.0f; ///< of lengths, see Box::half_area
+    clr_real area_scale_ = 1.0f;
 };
 
 } // namespace
@@ -395,4 +384,4 @@ void collapse(const Input &input, std::span<const Primitive> primitives,
     Collapser(input, primitives, binary, options, bvh).run();
 }
 
-} // namespace clrender::bvh
+} // namespace clrender::inline CLR_PRECISION::bvh

@@ -9,17 +9,17 @@
 #include <limits>
 #include <vector>
 
-namespace clrender::bvh {
+namespace clrender::inline CLR_PRECISION::bvh {
 
 /// Three coordinates, stored as four: then one vector instruction treats them all.
 struct alignas(16) Point {
-    float c[4];
+    clr_real c[4];
 
     Point() = default;
-    explicit Point(float all) : c{all, all, all, all} {}
-    explicit Point(const glm::vec3 &p) : c{p.x, p.y, p.z, p.z} {}
-    float &operator[](int axis) { return c[axis]; }
-    float operator[](int axis) const { return c[axis]; }
+    explicit Point(clr_real all) : c{all, all, all, all} {}
+    explicit Point(const Vec3 &p) : c{p.x, p.y, p.z, p.z} {}
+    clr_real &operator[](int axis) { return c[axis]; }
+    clr_real operator[](int axis) const { return c[axis]; }
 };
 
 template <class Operation>
@@ -32,24 +32,24 @@ Point each_of(const Point &a, const Point &b, const Operation &operation) {
 }
 
 inline Point min(const Point &a, const Point &b) {
-    return each_of(a, b, [](float x, float y) { return y < x ? y : x; });
+    return each_of(a, b, [](clr_real x, clr_real y) { return y < x ? y : x; });
 }
 inline Point max(const Point &a, const Point &b) {
-    return each_of(a, b, [](float x, float y) { return x < y ? y : x; });
+    return each_of(a, b, [](clr_real x, clr_real y) { return x < y ? y : x; });
 }
 inline Point operator+(const Point &a, const Point &b) {
-    return each_of(a, b, [](float x, float y) { return x + y; });
+    return each_of(a, b, [](clr_real x, clr_real y) { return x + y; });
 }
 inline Point operator-(const Point &a, const Point &b) {
-    return each_of(a, b, [](float x, float y) { return x - y; });
+    return each_of(a, b, [](clr_real x, clr_real y) { return x - y; });
 }
 inline Point operator*(const Point &a, const Point &b) {
-    return each_of(a, b, [](float x, float y) { return x * y; });
+    return each_of(a, b, [](clr_real x, clr_real y) { return x * y; });
 }
 
 struct Box {
-    Point lower{std::numeric_limits<float>::max()};
-    Point upper{-std::numeric_limits<float>::max()};
+    Point lower{std::numeric_limits<clr_real>::max()};
+    Point upper{-std::numeric_limits<clr_real>::max()};
 
     void grow(const Point &point) {
         lower = min(lower, point);
@@ -61,7 +61,7 @@ struct Box {
     }
     /// Half the surface in units of 1 / scale^2; 0 when nothing was added. The scale keeps the
     /// product of large coordinates finite.
-    [[nodiscard]] float half_area(float scale) const {
+    [[nodiscard]] clr_real half_area(clr_real scale) const {
         const Point size = (upper - lower) * Point(scale);
         return lower[0] > upper[0] ? 0.0f
                                    : size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
@@ -70,9 +70,9 @@ struct Box {
 
 /// One triangle (`index` into the triangles) or sphere (the number of triangles + its index).
 struct Primitive {
-    float lower[3];
+    clr_real lower[3];
     std::uint32_t index;
-    float upper[3];
+    clr_real upper[3];
     std::uint32_t unused;
 
     void set(const Box &box, std::uint32_t number) {
@@ -88,7 +88,7 @@ struct Primitive {
         return box;
     }
 };
-static_assert(sizeof(Primitive) == 32);
+static_assert(sizeof(Primitive) == 8 * sizeof(clr_real));
 
 /// A node of the binary tree over `Primitive`s [begin, begin + count). The two children lie side by
 /// side; a leaf has none and holds what fits into one block: up to eight primitives of one kind.
@@ -103,7 +103,7 @@ struct BinaryNode {
 
 /// The scene as both halves of the build see it.
 struct Input {
-    std::span<const std::array<glm::vec3, 3>> triangles;
+    std::span<const std::array<Vec3, 3>> triangles;
     std::span<const BvhSphere> spheres;
 
     [[nodiscard]] bool is_sphere(const Primitive &p) const { return p.index >= triangles.size(); }
@@ -126,7 +126,7 @@ void collapse(const Input &input, std::span<const Primitive> primitives,
 template <class Left, class Right>
 void run_both(bool parallel, const Left &left, const Right &right);
 
-} // namespace clrender::bvh
+} // namespace clrender::inline CLR_PRECISION::bvh
 
 #include <tbb/parallel_invoke.h>
 

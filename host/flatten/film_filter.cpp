@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -127,21 +127,21 @@ private:
 
 } // namespace
 
-std::vector<float> tabulate_filter(const ReconstructionFilter &filter) {
+std::vector<clr_real> tabulate_filter(const ReconstructionFilter &filter) {
     const SteppedFilter stepped(filter);
     const double integral = 2 * stepped.beyond(0, false);
-    std::vector<float> table(CLR_FILTER_SIZE, 0.0f);
-    const auto at = [&](int offset, std::size_t i) -> float & {
+    std::vector<clr_real> table(CLR_FILTER_SIZE, 0.0f);
+    const auto at = [&](int offset, std::size_t i) -> clr_real & {
         return table[static_cast<std::size_t>(offset) + i];
     };
     for (std::size_t k = 0; k < SteppedFilter::levels; ++k)
-        at(CLR_FILTER_VALUES, k) = static_cast<float>(stepped.value(k) / integral);
+        at(CLR_FILTER_VALUES, k) = static_cast<clr_real>(stepped.value(k) / integral);
 
     // Places in proportion to |filter|, the left half mirrored; the same ones as the device reads.
     constexpr std::size_t steps = CLR_FILTER_STEPS;
     for (std::size_t i = 0; i <= steps / 2; ++i) {
         const double share = 2 * static_cast<double>(i) / steps;
-        const auto distance = static_cast<float>(stepped.distance_of(share));
+        const auto distance = static_cast<clr_real>(stepped.distance_of(share));
         at(CLR_FILTER_INVERSE, i) = -distance;
         at(CLR_FILTER_INVERSE, steps - i) = distance;
     }
@@ -157,11 +157,11 @@ std::vector<float> tabulate_filter(const ReconstructionFilter &filter) {
         const double outer = -static_cast<double>(at(CLR_FILTER_INVERSE, i));
         const double inner = -static_cast<double>(at(CLR_FILTER_INVERSE, i + 1));
         const double part = outer > inner ? (outer - border) / (outer - inner) : 0;
-        at(CLR_FILTER_EDGE, k) = static_cast<float>((static_cast<double>(i) + part) / steps);
+        at(CLR_FILTER_EDGE, k) = static_cast<clr_real>((static_cast<double>(i) + part) / steps);
         at(CLR_FILTER_EDGE_SIGNED, k) =
-            static_cast<float>(stepped.beyond(border, false) / integral);
+            static_cast<clr_real>(stepped.beyond(border, false) / integral);
     }
     return table;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

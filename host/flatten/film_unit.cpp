@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -69,4 +69,4 @@ int film_exponent(const Scene &scene, const Placement &placement) {
     return std::clamp(std::ilogb(size) + 1, -largest_exponent, largest_exponent);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -1,5 +1,5 @@
 #pragma once
-/// The scene as the device gets it: float32 arrays of shared structs, the acceleration structure,
+/// The scene as the device gets it: arrays of shared structs, the acceleration structure,
 /// the light tables, and what of it all the kernel has to know.
 
 #include "bvh_builder.h"
@@ -13,21 +13,20 @@
 #include <cstddef>
 #include <vector>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// From scene coordinates to the renderer's: p' = (p - center) * scale, scale a power of two, so
-/// that the scene lies within a few units of the origin.
+/// that most of what is small lies within a unit of the origin, see choose_placement().
 struct Placement {
     glm::dvec3 center{0.0};
     double scale = 1;
 
-    [[nodiscard]] glm::vec3 apply(const glm::dvec3 &p) const {
-        return glm::vec3((p - center) * scale);
-    }
+    [[nodiscard]] glm::dvec3 exact(const glm::dvec3 &p) const { return (p - center) * scale; }
+    [[nodiscard]] glm::vec3 apply(const glm::dvec3 &p) const { return glm::vec3(exact(p)); }
 };
 
 /// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
-using TriangleCorners = std::array<glm::vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 
 /// Names follow the kernel's arguments (kernels/scene.clh says what each array holds).
 struct FlatScene {
@@ -39,11 +38,11 @@ struct FlatScene {
     std::vector<PrimitiveRecord> records;
     Bvh bvh;
     std::vector<uint> triangles;
-    std::vector<float> normals;
-    std::vector<float> uvs;
+    std::vector<clr_real> normals;
+    std::vector<clr_real> uvs;
     std::vector<uint> shape_of;
     std::vector<ShapeInfo> shapes;
-    std::vector<float> shape_frames;
+    std::vector<clr_real> shape_frames;
     std::vector<Material> materials;
     std::vector<EmitterInfo> emitters;
     std::vector<Light> lights;
@@ -51,12 +50,12 @@ struct FlatScene {
     std::vector<LightNode> light_nodes;
     std::vector<TextureInfo> textures;
     std::vector<uint> texels_u8;
-    std::vector<float> texels_f32;
-    std::vector<float> decode;
-    std::vector<float> env_texels;
-    std::vector<float> env_cdf;
+    std::vector<clr_real> texels_f32;
+    std::vector<clr_real> decode;
+    std::vector<clr_real> env_texels;
+    std::vector<clr_real> env_cdf;
     std::vector<uint> env_guide;
-    std::vector<float> filter;
+    std::vector<clr_real> filter;
     /// All but LANES, TILE, SAMPLER and PROFILE, which the render decides.
     KernelConfig config;
     std::size_t triangle_count = 0;
@@ -86,4 +85,4 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options = {});
 /// Builds the hierarchy over the triangles and spheres that need one. Warns of degenerate ones.
 void build_hierarchy(FlatScene &flat);
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -1,6 +1,6 @@
 #include "flatten_parts.h"
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 std::size_t FlatScene::bytes() const {
     const auto size = [](const auto &...arrays) {
@@ -20,7 +20,7 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
     // Textured lights need surface coordinates too, which the shapes have to know.
     for (const Emitter &emitter : scene.emitters)
         if (emitter.kind == EmitterKind::area) {
-            float ignored[3];
+            clr_real ignored[3];
             flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
         }
     if (work.wants("HAS_UVS"))
@@ -33,4 +33,4 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
     return std::move(work.flat);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -1,12 +1,15 @@
 #include "film_filter.h"
 #include "flatten_parts.h"
+#include "scene/limits.h"
+#include "shape_bounds.h"
 #include "shared/film_filter.h"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <limits>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -16,10 +19,10 @@ constexpr int max_border = CLR_LEAST_TILE / 2;
 /// Mitsuba's `depth` measures from the near plane, stated or not.
 constexpr double depth_near_clip = 0.01;
 
-void store(float (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<float>(v.x);
-    out[1] = static_cast<float>(v.y);
-    out[2] = static_cast<float>(v.z);
+void store(clr_real (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<clr_real>(v.x);
+    out[1] = static_cast<clr_real>(v.y);
+    out[2] = static_cast<clr_real>(v.z);
 }
 
 /// Half the extent of the image plane at distance 1, along x and y.
@@ -55,7 +58,7 @@ void flatten_film(Flattening &work) {
                                     format == PixelFormat::xyza
                                 ? 1
                                 : 0;
-    f.filter_radius = static_cast<float>(filter_radius(film.filter));
+    f.filter_radius = static_cast<clr_real>(filter_radius(film.filter));
     if (work.options.pixel_centers)
         flat.config.FILTER = 2;
     else if (film.filter.kind != FilterKind::box) {
@@ -74,6 +77,8 @@ void flatten_integrator(Flattening &work) {
     FrameData &f = flat.frame;
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
     f.rr_depth = integrator.rr_depth;
+    if (f.max_depth > max_depth_without_roulette)
+        f.rr_depth = std::min(f.rr_depth, max_depth_without_roulette);
     const Strategy strategy = strategy_of(work);
     flat.config.STRATEGY = static_cast<int>(strategy);
     flat.config.HIDE_EMITTERS = integrator.hide_emitters ? 1 : 0;
@@ -93,6 +98,59 @@ void flatten_integrator(Flattening &work) {
     flat.config.INTEGRATOR = integrator.kind == IntegratorKind::depth ? 1 : 0;
     flat.config.HAS_ROULETTE =
         integrator.kind != IntegratorKind::depth && f.rr_depth < f.max_depth ? 1 : 0;
+}
+
+/// A pixel's width on the image plane at distance 1 from which on float32 directions do for pixels.
+constexpr double narrow_pixel = 0x1p-17;
+
+/// The depths between which a shape lies, seen from the eye along `axis`.
+struct DepthRange {
+    double nearest, farthest;
+};
+
+DepthRange depth_range(const Shape &shape, const glm::dvec3 &eye, const glm::dvec3 &axis) {
+    if (shape.kind == ShapeKind::sphere) {
+        const double middle = glm::dot(glm::dvec3(shape.to_world[3]) - eye, axis);
+        return {middle - sphere_radius(shape), middle + sphere_radius(shape)};
+    }
+    const Box box = shape_box(shape);
+    DepthRange range{std::numeric_limits<double>::infinity(),
+                     -std::numeric_limits<double>::infinity()};
+    for (int i = 0; i < 8 && !box.empty(); ++i) {
+        const glm::dvec3 corner((i & 1) != 0 ? box.high.x : box.low.x,
+                                (i & 2) != 0 ? box.high.y : box.low.y,
+                                (i & 4) != 0 ? box.high.z : box.low.z);
+        const double depth = glm::dot(corner - eye, axis);
+        range.nearest = std::min(range.nearest, depth);
+        range.farthest = std::max(range.farthest, depth);
+    }
+    return range;
+}
+
+/// The depth at which camera rays start, in scene units: that of the nearest shape, so that neither
+/// the eye's place nor the direction loses pixels to rounding, however far away the eye is. Where
+/// a shape reaches to the eye, and only a `narrow` angle is seen, rays go in two legs
+/// (HAS_FAR_CAMERA), and the second one starts before the middle of the scene.
+double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
+    const Scene &scene = work.scene;
+    const glm::dvec3 eye(scene.sensor.to_world[3]);
+    const double unit = 1 / work.flat.placement.scale;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Shape &shape : scene.shapes) {
+        const DepthRange range = depth_range(shape, eye, axis);
+        if (range.farthest > 0)
+            nearest = std::min(nearest, range.nearest);
+    }
+    constexpr double margin = 0x1p-4;
+    if (nearest > margin * unit)
+        return std::isfinite(nearest) ? nearest - margin * unit : 0;
+    constexpr double reach = 4, far_away = 16;
+    const double middle = glm::dot(work.flat.placement.center - eye, axis);
+    if (!narrow || middle < far_away * unit || scene.integrator.kind == IntegratorKind::depth ||
+        scene.sensor.near_clip.value_or(0) > middle - reach * unit)
+        return 0;
+    work.flat.config.HAS_FAR_CAMERA = 1;
+    return middle - reach * unit;
 }
 
 } // namespace
@@ -129,22 +187,35 @@ void flatten_camera(Flattening &work) {
     const glm::dvec3 step_y = -up * (2 * half.y / scene.film.height);
     const glm::dvec2 middle = {scene.film.width * (0.5 - sensor.principal_point_offset.x),
                                scene.film.height * (0.5 - sensor.principal_point_offset.y)};
+    const glm::dvec3 corner = axis - step_x * middle.x - step_y * middle.y;
     store(f.step_x, step_x);
     store(f.step_y, step_y);
-    store(f.corner, axis - step_x * middle.x - step_y * middle.y);
+    store(f.corner, corner);
 
     const double unit = flat.placement.scale;
     f.length_unit = static_cast<float>(1 / unit);
-    const bool depth = scene.integrator.kind == IntegratorKind::depth;
-    f.near_clip = static_cast<float>(unit * sensor.near_clip.value_or(depth ? depth_near_clip : 0));
-    f.far_clip = static_cast<float>(
-        unit * sensor.far_clip.value_or(std::numeric_limits<double>::infinity()));
     flat.config.HAS_CLIP = sensor.near_clip || sensor.far_clip ? 1 : 0;
     if (sensor.kind == SensorKind::thinlens) {
         flat.config.HAS_LENS = sensor.aperture_radius > 0 ? 1 : 0;
-        f.aperture_radius = static_cast<float>(unit * sensor.aperture_radius);
-        f.focus_distance = static_cast<float>(unit * sensor.focus_distance);
+        f.aperture_radius = static_cast<clr_real>(unit * sensor.aperture_radius);
+        f.focus_distance = static_cast<clr_real>(unit * sensor.focus_distance);
     }
+
+    const bool narrow = std::min(glm::length(step_x), glm::length(step_y)) < narrow_pixel;
+    const double start = start_depth(work, axis, narrow);
+    const glm::dvec3 eye = flat.placement.exact(glm::dvec3(sensor.to_world[3]));
+    store(f.start, eye + corner * (unit * start));
+    store(f.start_x, step_x * (unit * start));
+    store(f.start_y, step_y * (unit * start));
+    f.lens_share = static_cast<float>(1 - start / sensor.focus_distance);
+    const bool depth = scene.integrator.kind == IntegratorKind::depth;
+    const double near = sensor.near_clip.value_or(depth ? depth_near_clip : 0);
+    const double far = sensor.far_clip.value_or(std::numeric_limits<double>::infinity());
+    f.near_clip = static_cast<float>(unit * std::max(near - start, 0.0));
+    f.far_clip = static_cast<float>(unit * (far - start));
+    f.skipped_depth = static_cast<float>(unit * std::max(start - near, 0.0));
+    f.near_of_eye = static_cast<float>(unit * near);
+    f.first_leg = static_cast<float>(unit * (std::min(start, far) - near));
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <span>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -38,7 +38,7 @@ double cell_solid_angle(std::size_t j, std::size_t rows, std::size_t width) {
 
 /// Appends the distribution of steps of these weights to `cdf`, and to `guide` the step that each
 /// multiple of 1 / count lies in. Steps of equal weight where there is none.
-void append_distribution(std::span<const double> weights, std::vector<float> &cdf,
+void append_distribution(std::span<const double> weights, std::vector<clr_real> &cdf,
                          std::vector<uint> &guide) {
     const std::size_t count = weights.size();
     const std::size_t first = cdf.size();
@@ -47,12 +47,12 @@ void append_distribution(std::span<const double> weights, std::vector<float> &cd
     cdf.push_back(0.0f);
     for (std::size_t i = 0; i < count; ++i) {
         sum += total > 0 ? weights[i] / total : 1 / static_cast<double>(count);
-        cdf.push_back(static_cast<float>(std::min(sum, 1.0)));
+        cdf.push_back(static_cast<clr_real>(std::min(sum, 1.0)));
     }
     cdf.back() = 1.0f;
     std::size_t step = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto u = static_cast<float>(static_cast<double>(i) / static_cast<double>(count));
+        const auto u = static_cast<clr_real>(static_cast<double>(i) / static_cast<double>(count));
         while (step + 1 < count && cdf[first + step + 1] <= u)
             ++step;
         // One step back, where the device's product of u and the count may round up to i.
@@ -69,8 +69,8 @@ void append_texels(const Emitter &emitter, FlatScene &flat) {
         for (std::size_t column = 0; column <= width; ++column) {
             const Rgb c = radiance_of(emitter, row * width + column % width);
             for (int k = 0; k < 3; ++k)
-                flat.env_texels.push_back(static_cast<float>(c[k]));
-            flat.env_texels.push_back(static_cast<float>(luminance(c)));
+                flat.env_texels.push_back(static_cast<clr_real>(c[k]));
+            flat.env_texels.push_back(static_cast<clr_real>(luminance(c)));
         }
 }
 
@@ -81,12 +81,12 @@ struct CellWeights {
 };
 
 /// What of a luminance is above the floor.
-float weight_above(float luminance, float floor) {
-    return std::max(luminance - floor, 0.0f);
+clr_real weight_above(clr_real luminance, clr_real floor) {
+    return std::max(luminance - floor, clr_real{0});
 }
 
 /// Weights by the luminance above `floor` times the solid angle.
-CellWeights weigh_cells(const FlatScene &flat, float floor) {
+CellWeights weigh_cells(const FlatScene &flat, clr_real floor) {
     const std::size_t width = flat.frame.env_width, rows = flat.frame.env_height - 1;
     const auto weight_at = [&](std::size_t row, std::size_t column) {
         return double{weight_above(flat.env_texels[4 * (row * (width + 1) + column) + 3], floor)};
@@ -111,12 +111,12 @@ CellWeights weigh_cells(const FlatScene &flat, float floor) {
 /// Returns the integral over all directions of the luminance that is sampled; 0 for a black map.
 double build_cells(FlatScene &flat, bool alone) {
     const std::size_t width = flat.frame.env_width, rows = flat.frame.env_height - 1;
-    float floor = 0;
+    clr_real floor = 0;
     CellWeights weights = weigh_cells(flat, floor);
     if (!(weights.total > 0))
         return 0;
     if (!alone) {
-        const auto mean = static_cast<float>(weights.total / (4 * pi));
+        const auto mean = static_cast<clr_real>(weights.total / (4 * pi));
         CellWeights above = weigh_cells(flat, mean);
         // A map that is even all over has nothing brighter but for rounding.
         constexpr double least_part = 1e-5;
@@ -126,7 +126,7 @@ double build_cells(FlatScene &flat, bool alone) {
         }
     }
     // The device squares the weights of the texels: the largest is brought between 1 and 2.
-    float largest = 0;
+    clr_real largest = 0;
     for (std::size_t i = 3; i < flat.env_texels.size(); i += 4) {
         flat.env_texels[i] = weight_above(flat.env_texels[i], floor);
         largest = std::max(largest, flat.env_texels[i]);
@@ -135,8 +135,8 @@ double build_cells(FlatScene &flat, bool alone) {
     for (std::size_t i = 3; i < flat.env_texels.size(); i += 4)
         flat.env_texels[i] = std::ldexp(flat.env_texels[i], -exponent);
     const auto count = static_cast<double>(rows);
-    flat.frame.env_density = static_cast<float>(2 * count * std::sin(pi / (2 * count)) /
-                                                (pi * std::ldexp(weights.total, -exponent)));
+    flat.frame.env_density = static_cast<clr_real>(2 * count * std::sin(pi / (2 * count)) /
+                                                   (pi * std::ldexp(weights.total, -exponent)));
     std::vector<double> weight_of_row(rows, 0.0);
     for (std::size_t i = 0; i < weights.cells.size(); ++i)
         weight_of_row[i / width] += weights.cells[i];
@@ -158,7 +158,7 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
     if (emitter.kind == EmitterKind::constant) {
         const Rgb radiance = work.scene.textures[static_cast<std::size_t>(emitter.radiance)].value;
         for (int c = 0; c < 3; ++c)
-            f.env_radiance[c] = static_cast<float>(radiance[c]);
+            f.env_radiance[c] = static_cast<clr_real>(radiance[c]);
         flat.config.ENVIRONMENT = 1;
         return;
     }
@@ -171,7 +171,7 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
         const glm::dvec3 axis =
             glm::normalize(glm::dvec3(to_map[0][row], to_map[1][row], to_map[2][row]));
         for (int column = 0; column < 3; ++column)
-            f.env_rotation[4 * row + column] = static_cast<float>(axis[column]);
+            f.env_rotation[4 * row + column] = static_cast<clr_real>(axis[column]);
     }
     *power = build_cells(flat, strategy_of(work) == Strategy::light);
     // A map that is black all over adds nothing.
@@ -200,4 +200,4 @@ void make_environment_a_map(FlatScene &flat) {
     flat.config.ENVIRONMENT = 2;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -18,10 +18,10 @@ constexpr double pi = std::numbers::pi;
 /// light samples: their powers cannot be compared where the scene has no natural bounds.
 constexpr double least_share = 0.25;
 
-void store(float (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<float>(v.x);
-    out[1] = static_cast<float>(v.y);
-    out[2] = static_cast<float>(v.z);
+void store(clr_real (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<clr_real>(v.x);
+    out[1] = static_cast<clr_real>(v.y);
+    out[2] = static_cast<clr_real>(v.z);
 }
 
 /// Mean luminance of a texture; of a bitmap's texels, which may be off by what a mesh shows of it.
@@ -108,13 +108,13 @@ void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, doubl
     const bool by_vertex = !flat.triangles.empty();
     for (std::size_t t = first; t < first + count; ++t) {
         const TriangleCorners &corner = flat.corners[t];
-        const glm::vec3 e1 = corner[1] - corner[0];
-        const glm::vec3 e2 = corner[2] - corner[0];
+        const Vec3 e1 = corner[1] - corner[0];
+        const Vec3 e2 = corner[2] - corner[0];
         LightTriangle triangle{};
         store(triangle.v0, glm::dvec3(corner[0]));
         store(triangle.e1, glm::dvec3(e1));
         store(triangle.e2, glm::dvec3(e2));
-        const float default_uvs[6] = {0, 0, 1, 0, 0, 1};
+        const clr_real default_uvs[6] = {0, 0, 1, 0, 0, 1};
         std::copy(default_uvs, default_uvs + 6, triangle.uvs);
         for (std::size_t c = 0; by_vertex && c < 3; ++c) {
             const std::size_t vertex = flat.triangles[3 * t + c];
@@ -129,7 +129,7 @@ void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, doubl
         Light light = base;
         light.kind = CLR_LIGHT_TRIANGLE;
         light.prim = static_cast<uint>(flat.light_triangles.size());
-        light.area = static_cast<float>(area);
+        light.area = static_cast<clr_real>(area);
         flat.light_triangles.push_back(triangle);
         LightExtent extent;
         extent.lower = glm::min(glm::min(corner[0], corner[1]), corner[2]);
@@ -247,7 +247,7 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
     if (sole.kind == CLR_LIGHT_PLANAR || sole.kind == CLR_LIGHT_TRIANGLE)
         store(sole.position, (extent.lower + extent.upper) * 0.5);
     const glm::dvec3 diagonal = extent.upper - extent.lower;
-    flat.frame.final_distance2 = static_cast<float>(glm::dot(diagonal, diagonal));
+    flat.frame.final_distance2 = static_cast<clr_real>(glm::dot(diagonal, diagonal));
     if (sole.kind == CLR_LIGHT_TRIANGLE)
         for (EmitterInfo &info : flat.emitters)
             info.density = info.density > 0 ? 1 / sole.area : 0.0f;
@@ -261,7 +261,7 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
             distance = std::min(
                 distance, shadow_free_distance(extent, flat.spheres[static_cast<std::size_t>(i)]));
     flat.config.SHADOW_FREE_COUNT = distance > 0 ? flat.config.WIDE_COUNT : 0;
-    flat.frame.shadow_free_distance = static_cast<float>(distance);
+    flat.frame.shadow_free_distance = static_cast<clr_real>(distance);
 }
 
 /// How many lights to sample where a path first meets a diffuse surface. A second one costs a tenth
@@ -321,7 +321,8 @@ void flatten_lights(Flattening &work) {
         log::warn("the scene has no light: the picture will be black");
 
     if (flat.config.ENVIRONMENT == 2)
-        flat.frame.env_probability = static_cast<float>(environment_share(list.extents, map_power));
+        flat.frame.env_probability =
+            static_cast<clr_real>(environment_share(list.extents, map_power));
     flat.config.LIGHT_SAMPLES = light_samples(work, list);
     // A tree needs two lights; those without light are never chosen.
     while (work.wants("LIGHT_COUNT") && list.size() < 2)
@@ -349,4 +350,4 @@ void flatten_lights(Flattening &work) {
     }
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

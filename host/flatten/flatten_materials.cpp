@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
-void store(float (&out)[3], const Rgb &v) {
+void store(clr_real (&out)[3], const Rgb &v) {
     for (int c = 0; c < 3; ++c)
-        out[c] = static_cast<float>(v[c]);
+        out[c] = static_cast<clr_real>(v[c]);
 }
 
 /// Byte `channel` of pixel `at`, grey images giving the same for all.
@@ -19,7 +19,7 @@ uint byte_of(const Image &image, std::size_t at, int channel) {
     return image.u8[at * static_cast<std::size_t>(channels) + static_cast<std::size_t>(source)];
 }
 
-float float_of(const Image &image, std::size_t at, int channel) {
+clr_real float_of(const Image &image, std::size_t at, int channel) {
     const int channels = image.channels;
     const int source = channels >= 3 ? channel : 0;
     return image.f32[at * static_cast<std::size_t>(channels) + static_cast<std::size_t>(source)];
@@ -59,7 +59,7 @@ TextureInfo describe(const Texture &source, uint offset) {
     TextureInfo t{};
     for (int row = 0; row < 2; ++row)
         for (int column = 0; column < 3; ++column)
-            t.to_uv[3 * row + column] = static_cast<float>(source.to_uv[column][row]);
+            t.to_uv[3 * row + column] = static_cast<clr_real>(source.to_uv[column][row]);
     if (source.kind == TextureKind::checkerboard) {
         t.kind = CLR_TEXTURE_CHECKERBOARD;
         store(t.color0, source.color0);
@@ -80,12 +80,12 @@ TextureInfo describe(const Texture &source, uint offset) {
 }
 
 /// 256 linear values, then the same through the sRGB transfer function.
-std::vector<float> decode_table() {
-    std::vector<float> table(512);
+std::vector<clr_real> decode_table() {
+    std::vector<clr_real> table(512);
     for (std::size_t i = 0; i < 256; ++i) {
         const double value = static_cast<double>(i) / 255;
-        table[i] = static_cast<float>(value);
-        table[256 + i] = static_cast<float>(srgb_decode(value));
+        table[i] = static_cast<clr_real>(value);
+        table[256 + i] = static_cast<clr_real>(srgb_decode(value));
     }
     return table;
 }
@@ -148,7 +148,7 @@ void share_dielectric_fields(FlatScene &flat) {
 
 } // namespace
 
-uint flatten_texture(Flattening &work, int texture, Rgb absent, float *constant) {
+uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant) {
     FlatScene &flat = work.flat;
     Rgb value = absent;
     const Texture *source = nullptr;
@@ -158,7 +158,7 @@ uint flatten_texture(Flattening &work, int texture, Rgb absent, float *constant)
     }
     if (source == nullptr || source->kind == TextureKind::constant) {
         for (int c = 0; c < 3; ++c)
-            constant[c] = static_cast<float>(value[c]);
+            constant[c] = static_cast<clr_real>(value[c]);
         return CLR_NONE;
     }
 
@@ -217,4 +217,4 @@ void flatten_materials(Flattening &work) {
     share_dielectric_fields(flat);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

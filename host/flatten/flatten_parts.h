@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// A flat scene in the making: how the scene's numbers map to the flat one's.
 struct Flattening {
@@ -24,7 +24,9 @@ struct Flattening {
     [[nodiscard]] bool wants(const char *name) const { return options.generality.count(name) != 0; }
 };
 
-/// Where the scene is put, so that what the camera is near to lies within a unit of the origin.
+/// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
+/// inverse of their sizes, and the unit is their median distance from it. Neither depends on the
+/// camera, nor do they move for something that is far away or huge.
 Placement choose_placement(const Scene &scene);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
@@ -32,7 +34,7 @@ void flatten_materials(Flattening &work);
 
 /// Index of a texture in the flat scene; CLR_NONE for a constant one and for none, whose colour
 /// (`absent` for none) goes to constant[0..2].
-uint flatten_texture(Flattening &work, int texture, Rgb absent, float *constant);
+uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant);
 
 /// Spheres, planars, meshes and the BVH; shape infos name emitters by Scene's index.
 void flatten_shapes(Flattening &work);
@@ -62,4 +64,4 @@ int film_exponent(const Scene &scene, const Placement &placement);
 /// Relative luminance of linear sRGB (Rec. 709).
 double luminance(const Rgb &c);
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

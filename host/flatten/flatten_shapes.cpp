@@ -1,6 +1,7 @@
 #include "flatten_parts.h"
 #include "log.h"
 #include "shadowless_planars.h"
+#include "shape_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,27 +9,28 @@
 #include <fmt/core.h>
 #include <limits>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
 /// As many spheres, and as many rectangles and disks, are tested by every ray; more go into the
 /// BVH.
 constexpr std::ptrdiff_t few_primitives = 16;
-/// Less than float32 shows of the renderer's units where the camera looks, within one of the
+/// Less than the precision shows of the renderer's units where the camera looks, within one of the
 /// origin.
-constexpr double unseen = 0x1p-22;
+constexpr double unseen = CLR_EITHER(0x1p-22, 0x1p-51);
+
+/// The outline of planars, for rays, is this share of their reach larger: eight units of rounding.
+constexpr double planar_wider = 0x1p-21;
+/// Hits nearer to it than this share are moved away from it (PLANAR_MARGIN in planar.clh).
+constexpr double planar_margin = 0x1p-18;
 
 constexpr float missing = std::numeric_limits<float>::quiet_NaN();
 
-void store(float (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<float>(v.x);
-    out[1] = static_cast<float>(v.y);
-    out[2] = static_cast<float>(v.z);
-}
-
-double sphere_radius(const Shape &shape) {
-    return std::cbrt(std::abs(glm::determinant(glm::dmat3(shape.to_world))));
+void store(clr_real (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<clr_real>(v.x);
+    out[1] = static_cast<clr_real>(v.y);
+    out[2] = static_cast<clr_real>(v.z);
 }
 
 /// True where the normal points the other way than the shape's own.
@@ -53,7 +55,7 @@ uint append_shape(const Shape &shape, Flattening &work) {
             to_local = glm::inverse(glm::dmat3(shape.to_world)) * sphere_radius(shape);
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 3; ++column)
-                flat.shape_frames.push_back(static_cast<float>(to_local[column][row]));
+                flat.shape_frames.push_back(static_cast<clr_real>(to_local[column][row]));
     }
     return static_cast<uint>(flat.shapes.size() - 1);
 }
@@ -69,8 +71,14 @@ Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
     Sphere s{};
     store(s.center, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
     const double radius = sphere_radius(shape) * placement.scale;
-    s.radius = static_cast<float>(is_inverted(shape) ? -radius : radius);
+    s.radius = static_cast<clr_real>(is_inverted(shape) ? -radius : radius);
     return s;
+}
+
+/// How far a rectangle or disk reaches from the origin, to within a factor of two.
+double planar_reach(const glm::dvec3 &du, const glm::dvec3 &dv, const glm::dvec3 &origin) {
+    const glm::dvec3 size = glm::abs(origin);
+    return std::max({size.x, size.y, size.z}) + glm::length(du) + glm::length(dv);
 }
 
 Planar flatten_planar(const Shape &shape, const Placement &placement) {
@@ -84,19 +92,41 @@ Planar flatten_planar(const Shape &shape, const Placement &placement) {
         normal = -normal;
     p.is_disk = shape.kind == ShapeKind::disk ? 1 : 0;
     p.area = static_cast<float>(glm::length(across) * (p.is_disk != 0 ? M_PI : 4));
-    store(p.origin, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
+    const glm::dvec3 origin = placement.exact(glm::dvec3(shape.to_world[3]));
+    store(p.origin, origin);
     store(p.normal, normal);
+    p.distance = static_cast<float>(glm::dot(normal, origin));
     store(p.du, du);
     store(p.dv, dv);
+    // The outline that rays are tested against is larger by what the test may lose to rounding.
+    const double wider = planar_wider * planar_reach(du, dv, origin);
+    const double stretch_u = 1 + wider / glm::length(du);
+    const double stretch_v = 1 + wider / glm::length(dv);
     // The dual basis within the plane.
     const double area2 = glm::dot(across, across);
-    store(p.ra, glm::cross(dv, across) / area2);
-    store(p.rb, glm::cross(across, du) / area2);
-    const glm::dvec3 half = glm::abs(du) + glm::abs(dv);
+    store(p.ra, glm::cross(dv, across) / area2 / stretch_u);
+    store(p.rb, glm::cross(across, du) / area2 / stretch_v);
+    const glm::dvec3 half = glm::abs(du) * stretch_u + glm::abs(dv) * stretch_v;
     p.half_x = static_cast<float>(half.x);
     p.half_y = static_cast<float>(half.y);
     p.half_z = static_cast<float>(half.z);
     return p;
+}
+
+/// PrimitiveRecord::frame of a rectangle or disk.
+void store_frame(float (&out)[8], const Shape &shape, const Placement &placement) {
+    const glm::dvec3 du = glm::dvec3(shape.to_world[0]) * placement.scale;
+    const glm::dvec3 dv = glm::dvec3(shape.to_world[1]) * placement.scale;
+    const glm::dvec3 across = glm::cross(du, dv);
+    const glm::dvec3 origin = placement.exact(glm::dvec3(shape.to_world[3]));
+    const glm::dvec3 ra = glm::cross(dv, across) / glm::dot(across, across);
+    const glm::dvec3 rb = glm::cross(across, du) / glm::dot(across, across);
+    for (int c = 0; c < 3; ++c) {
+        out[c] = static_cast<float>(ra[c]);
+        out[4 + c] = static_cast<float>(rb[c]);
+    }
+    out[3] = static_cast<float>(-glm::dot(ra, origin));
+    out[7] = static_cast<float>(-glm::dot(rb, origin));
 }
 
 /// The rectangle as two triangles, for scenes with many.
@@ -121,7 +151,7 @@ struct VertexData {
 void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flattening &work) {
     FlatScene &flat = work.flat;
     const uint shape_number = append_shape(shape, work);
-    std::vector<glm::vec3> positions(mesh.positions.size());
+    std::vector<Vec3> positions(mesh.positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
         positions[i] =
             flat.placement.apply(glm::dvec3(shape.to_world * glm::dvec4(mesh.positions[i], 1)));
@@ -141,16 +171,16 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
         const glm::dmat3 inverse_transpose =
             glm::transpose(glm::inverse(glm::dmat3(shape.to_world)));
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            glm::vec3 n{missing};
+            Vec3 n{missing};
             if (!mesh.normals.empty())
-                n = glm::vec3(glm::normalize(inverse_transpose * glm::dvec3(mesh.normals[i]))) *
-                    (shape.flip_normals ? -1.0f : 1.0f);
+                n = Vec3(glm::normalize(inverse_transpose * glm::dvec3(mesh.normals[i]))) *
+                    clr_real{shape.flip_normals ? -1.0f : 1.0f};
             flat.normals.insert(flat.normals.end(), {n.x, n.y, n.z});
         }
     }
     if (wanted.uvs)
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(missing) : mesh.uvs[i];
+            const Vec2 uv = mesh.uvs.empty() ? Vec2(missing) : Vec2(mesh.uvs[i]);
             flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
         }
     work.vertex_count += positions.size();
@@ -175,49 +205,76 @@ bool is_solid(const Scene &scene, const Shape &shape) {
     return distance > sphere_radius(shape) * margin + scene.sensor.aperture_radius;
 }
 
-/// Spheres from this radius on, in the renderer's units, are as large as what the camera is near
-/// to.
+/// Spheres from this radius on, in the renderer's units, are as large as the scene.
 constexpr double wide_radius = 0.5;
+/// From this radius on, a rounding of the radius is larger than what is seen of the scene.
+constexpr double huge_radius = 64;
+
+/// True if the sphere is large and its surface no farther from the origin than its radius.
+bool is_beside(const Shape &shape, const Placement &placement, double least_radius) {
+    const double radius = sphere_radius(shape) * placement.scale;
+    return radius >= least_radius &&
+           glm::length(placement.exact(glm::dvec3(shape.to_world[3]))) < 2 * radius;
+}
 
 /// The spheres' shapes in the order of their primitives: solid ones first, of these those that are
-/// wide before the others.
-std::vector<std::size_t> order_spheres(const Flattening &work, KernelConfig &config) {
+/// wide before the others; huge ones last. With `huge_only` no others.
+std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only,
+                                       KernelConfig &config) {
     const Scene &scene = work.scene;
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
-        if (scene.shapes[i].kind == ShapeKind::sphere)
+    const Placement &placement = work.flat.placement;
+    std::vector<std::size_t> order, huge;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        if (scene.shapes[i].kind != ShapeKind::sphere)
+            continue;
+        if (is_beside(scene.shapes[i], placement, huge_radius))
+            huge.push_back(i);
+        else if (!huge_only)
             order.push_back(i);
+    }
     const auto others = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
         return is_solid(scene, scene.shapes[i]);
     });
     const auto smaller = std::stable_partition(order.begin(), others, [&](std::size_t i) {
-        return sphere_radius(scene.shapes[i]) * work.flat.placement.scale >= wide_radius;
+        return is_beside(scene.shapes[i], placement, wide_radius);
     });
     config.SOLID_COUNT = static_cast<int>(others - order.begin());
     config.WIDE_COUNT = static_cast<int>(smaller - order.begin());
+    config.HUGE_COUNT = static_cast<int>(huge.size());
+    order.insert(order.end(), huge.begin(), huge.end());
     return order;
 }
 
-void flatten_spheres(Flattening &work, bool in_bvh) {
+/// The spheres that every ray tests: all of them, or the huge ones.
+void flatten_lane_wise_spheres(Flattening &work, bool huge_only) {
     FlatScene &flat = work.flat;
-    const std::vector<std::size_t> order = order_spheres(work, flat.config);
-    if (in_bvh)
-        flat.config.SOLID_COUNT = flat.config.WIDE_COUNT = 0;
-    for (const std::size_t i : order) {
+    for (const std::size_t i : order_spheres(work, huge_only, flat.config)) {
         const Shape &shape = work.scene.shapes[i];
-        const uint shape_number = append_shape(shape, work);
+        work.primitive_of_shape[static_cast<int>(i)] = append_shape(shape, work);
+        flat.spheres.push_back(flatten_sphere(shape, flat.placement));
+    }
+    if (work.wants("SPHERE_COUNT") && flat.spheres.empty()) {
+        append_no_shape(flat);
+        flat.spheres.emplace_back();
+    }
+    flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
+}
+
+/// The spheres that are too many to test one by one.
+void flatten_bvh_spheres(Flattening &work) {
+    FlatScene &flat = work.flat;
+    for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
+        const Shape &shape = work.scene.shapes[i];
+        if (shape.kind != ShapeKind::sphere || work.primitive_of_shape.count(static_cast<int>(i)))
+            continue;
+        const auto id = static_cast<uint>(flat.shape_of.size());
+        flat.shape_of.push_back(append_shape(shape, work));
         const Sphere s = flatten_sphere(shape, flat.placement);
         flat.spheres.push_back(s);
-        uint primitive = shape_number;
-        if (in_bvh) {
-            const auto id = static_cast<uint>(flat.shape_of.size());
-            flat.shape_of.push_back(shape_number);
-            flat.bvh_spheres.push_back(
-                {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
-            primitive = static_cast<uint>(flat.config.SPHERE_COUNT) +
-                        static_cast<uint>(flat.planars.size()) + id;
-        }
-        work.primitive_of_shape[static_cast<int>(i)] = primitive;
+        flat.bvh_spheres.push_back(
+            {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
+        work.primitive_of_shape[static_cast<int>(i)] = static_cast<uint>(flat.config.SPHERE_COUNT) +
+                                                       static_cast<uint>(flat.planars.size()) + id;
     }
 }
 
@@ -286,6 +343,17 @@ void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
         flat.planars.emplace_back();
     }
     flat.config.PLANAR_COUNT = static_cast<int>(flat.planars.size());
+    // Up to these coordinates no planar's hits are near its outline.
+    double rim = 1;
+    for (const Planar &p : flat.planars) {
+        const glm::dvec3 du(p.du[0], p.du[1], p.du[2]);
+        const glm::dvec3 dv(p.dv[0], p.dv[1], p.dv[2]);
+        const double margin =
+            planar_margin * planar_reach(du, dv, {p.origin[0], p.origin[1], p.origin[2]});
+        if (p.area > 0)
+            rim = std::min(rim, 1 - margin / std::min(glm::length(du), glm::length(dv)));
+    }
+    flat.frame.planar_rim = static_cast<float>(std::max(rim, 0.0));
 }
 
 void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
@@ -309,32 +377,80 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
     flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
 }
 
-/// What rays test and find of the lane-wise primitives, in their order.
+/// The shape of a lane-wise primitive.
+const Shape &shape_of_primitive(const Flattening &work, std::size_t primitive) {
+    const auto found = std::find_if(
+        work.primitive_of_shape.begin(), work.primitive_of_shape.end(),
+        [&](const auto &entry) { return entry.second == static_cast<uint>(primitive); });
+    return work.scene.shapes[static_cast<std::size_t>(found->first)];
+}
+
+/// What sphere.clh needs of a huge sphere: center / radius, and the difference of their squares
+/// over twice the radius, which is negative where the normal points inwards.
+struct HugeSphere {
+    glm::dvec3 a{0.0};
+    double h = 0;
+    double radius = 0;
+};
+
+HugeSphere huge_sphere(const Shape &shape, const Flattening &work) {
+    const glm::dvec3 center = work.flat.placement.exact(glm::dvec3(shape.to_world[3]));
+    const double size = sphere_radius(shape) * work.flat.placement.scale;
+    const double radius = is_inverted(shape) ? -size : size;
+    const double distance = glm::length(center);
+    return {center / radius, (distance - size) * (distance + size) / (2 * radius), radius};
+}
+
+/// What rays test of the lane-wise spheres, see SphereTest.
+void make_sphere_tests(FlatScene &flat, const Flattening &work) {
+    const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
+    const auto ordinary = spheres - static_cast<std::size_t>(flat.config.HUGE_COUNT);
+    flat.sphere_tests.resize(2 * spheres);
+    for (std::size_t i = 0; i < ordinary; ++i) {
+        const Sphere &s = flat.spheres[i];
+        const SphereTest test{{s.center[0], s.center[1], s.center[2]}, s.radius * s.radius};
+        flat.sphere_tests[i] = flat.sphere_tests[spheres + i] = test;
+    }
+    for (std::size_t i = ordinary; i < spheres; ++i) {
+        const HugeSphere sphere = huge_sphere(shape_of_primitive(work, i), work);
+        const double sign = sphere.radius < 0 ? -1 : 1;
+        store(flat.sphere_tests[i].center, sphere.a * sign);
+        flat.sphere_tests[i].radius2 = static_cast<float>(sphere.h * sign);
+        flat.sphere_tests[spheres + i].center[0] = static_cast<float>(sign / sphere.radius);
+        flat.sphere_tests[spheres + i].center[1] = static_cast<float>(sign * sphere.radius);
+    }
+}
+
+/// What rays find of the lane-wise primitives, in their order.
 void make_records(Flattening &work) {
     FlatScene &flat = work.flat;
     const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
-    for (std::size_t i = 0; i < 2 * spheres; ++i) {
-        const Sphere &s = flat.spheres[i % spheres];
-        flat.sphere_tests.push_back({{s.center[0], s.center[1], s.center[2]}, s.radius * s.radius});
-    }
+    make_sphere_tests(flat, work);
     bool one_sided = true;
     for (std::size_t i = 0; i < spheres + flat.planars.size(); ++i) {
         PrimitiveRecord r{};
         if (i < spheres) {
+            const bool huge = i + static_cast<std::size_t>(flat.config.HUGE_COUNT) >= spheres;
             std::copy_n(flat.spheres[i].center, 3, r.place);
             r.size = flat.spheres[i].radius;
             r.inv_size = 1 / r.size;
+            if (huge) {
+                const HugeSphere sphere = huge_sphere(shape_of_primitive(work, i), work);
+                store(r.place, sphere.a);
+                r.size = static_cast<float>(sphere.h);
+            }
         } else {
             const Planar &p = flat.planars[i - spheres];
             std::copy_n(p.normal, 3, r.place);
-            for (int c = 0; c < 3; ++c)
-                r.size += p.normal[c] * p.origin[c];
+            r.size = p.distance;
             r.is_disk = p.is_disk != 0 ? CLR_NONE : 0;
+            if (p.area > 0)
+                store_frame(r.frame, shape_of_primitive(work, i), flat.placement);
         }
         r.materials = flat.shapes[i].materials;
         r.emitter = flat.shapes[i].emitter;
-        const uint front = r.materials & CLR_NO_MATERIAL;
-        const uint back = r.materials >> 16;
+        const uint front = flat.shapes[i].materials & CLR_NO_MATERIAL;
+        const uint back = flat.shapes[i].materials >> 16;
         one_sided =
             one_sided && (front == back || front == CLR_NO_MATERIAL || back == CLR_NO_MATERIAL);
         const uint material = front != CLR_NO_MATERIAL ? front : back;
@@ -344,15 +460,15 @@ void make_records(Flattening &work) {
     }
     // Few records lie field by field, filled up with empty ones.
     if (flat.records.size() <= CLR_TABLE_SIZE && !work.wants("RECORD_TABLE")) {
-        constexpr std::size_t fields = sizeof(PrimitiveRecord) / sizeof(float);
+        constexpr std::size_t fields = sizeof(PrimitiveRecord) / sizeof(clr_real);
         std::vector<PrimitiveRecord> table(CLR_TABLE_SIZE);
         auto *to = reinterpret_cast<unsigned char *>(table.data());
         for (std::size_t i = 0; i < flat.records.size(); ++i)
             for (std::size_t field = 0; field < fields; ++field)
-                std::memcpy(to + (field * CLR_TABLE_SIZE + i) * sizeof(float),
+                std::memcpy(to + (field * CLR_TABLE_SIZE + i) * sizeof(clr_real),
                             reinterpret_cast<const unsigned char *>(&flat.records[i]) +
-                                field * sizeof(float),
-                            sizeof(float));
+                                field * sizeof(clr_real),
+                            sizeof(clr_real));
         flat.records = std::move(table);
         flat.config.RECORD_TABLE = 1;
     }
@@ -373,19 +489,13 @@ void flatten_shapes(Flattening &work) {
 
     // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles, and
     // spheres that are too many to test one by one.
-    if (!spheres_in_bvh)
-        flatten_spheres(work, false);
-    if (work.wants("SPHERE_COUNT") && flat.spheres.empty()) {
-        append_no_shape(flat);
-        flat.spheres.emplace_back();
-    }
-    flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
+    flatten_lane_wise_spheres(work, spheres_in_bvh);
     flatten_planars(work, rectangles_in_bvh);
     flatten_meshes(work, rectangles_in_bvh);
     flat.frame.prim_bvh_sphere =
         static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
     if (spheres_in_bvh)
-        flatten_spheres(work, true);
+        flatten_bvh_spheres(work);
 
     make_records(work);
     flat.config.HAS_BVH_SPHERES = flat.bvh_spheres.empty() ? 0 : 1;
@@ -407,4 +517,4 @@ void build_hierarchy(FlatScene &flat) {
             fmt::format("{} triangles or spheres without area are left out", flat.bvh.degenerate));
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

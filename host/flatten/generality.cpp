@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -95,4 +95,4 @@ void apply_generality(const Generality &wanted, FlatScene &flat) {
         fill_empty_arrays(flat);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

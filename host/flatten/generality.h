@@ -1,10 +1,12 @@
 #pragma once
 /// A kernel that can do more than its scene needs: for measuring what specialising it brings.
 
+#include "shared/shared_types.h"
+
 #include <set>
 #include <string>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 struct FlatScene;
 
@@ -20,4 +22,4 @@ const Generality &full_generality();
 /// indices: a sphere and a rectangle that no ray meets, lights without light.
 void apply_generality(const Generality &wanted, FlatScene &flat);
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

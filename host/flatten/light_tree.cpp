@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -203,22 +203,22 @@ std::size_t Builder::split(std::size_t first, std::size_t end, int level) {
     return half;
 }
 
-LightBounds flat_bounds(const Bounds &b, uint child, float (&axis)[4]) {
+LightBounds flat_bounds(const Bounds &b, uint child, clr_real (&axis)[4]) {
     LightBounds flat{};
     const glm::dvec3 center = (b.lower + b.upper) * 0.5;
     const double radius = glm::length(b.upper - b.lower) / 2;
     for (int c = 0; c < 3; ++c) {
-        flat.center[c] = static_cast<float>(center[c]);
-        axis[c] = static_cast<float>(b.cone.axis[c]);
+        flat.center[c] = static_cast<clr_real>(center[c]);
+        axis[c] = static_cast<clr_real>(b.cone.axis[c]);
     }
     // A little wider, for the rounding of the centre.
     const double grown = radius * (1 + 1e-5) + 1e-6 * glm::length(center);
-    flat.radius2 = static_cast<float>(grown * grown);
-    flat.intensity = static_cast<float>(std::min(b.intensity, largest_intensity));
+    flat.radius2 = static_cast<clr_real>(grown * grown);
+    flat.intensity = static_cast<clr_real>(std::min(b.intensity, largest_intensity));
     flat.child = child;
     const double angle = std::min(b.cone.angle + 1e-3, pi);
-    flat.cosine = angle >= pi ? -1.0f : static_cast<float>(std::cos(angle));
-    flat.sine = angle >= pi ? 0.0f : static_cast<float>(std::sin(angle));
+    flat.cosine = angle >= pi ? -1.0f : static_cast<clr_real>(std::cos(angle));
+    flat.sine = angle >= pi ? 0.0f : static_cast<clr_real>(std::sin(angle));
     return flat;
 }
 
@@ -248,4 +248,4 @@ LightTree build_light_tree(std::span<const LightExtent> lights) {
     return tree;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

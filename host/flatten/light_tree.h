@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// What the tree has to know of a light, in the renderer's coordinates.
 struct LightExtent {
@@ -28,4 +28,4 @@ struct LightTree {
 /// 2018, equation 2), at most CLR_LIGHT_TREE_LEVELS deep.
 LightTree build_light_tree(std::span<const LightExtent> lights);
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

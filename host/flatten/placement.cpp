@@ -1,80 +1,122 @@
 #include "flatten_parts.h"
 
+#include "shape_bounds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
-struct Box {
-    glm::dvec3 low{std::numeric_limits<double>::infinity()};
-    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-
-    void add(const glm::dvec3 &p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    [[nodiscard]] bool empty() const { return !(low.x <= high.x); }
-    [[nodiscard]] double distance(const glm::dvec3 &p) const {
-        return glm::length(glm::max(glm::max(low - p, p - high), glm::dvec3(0)));
-    }
+/// A piece of the scene: a shape, or a triangle of one; `size` is the diagonal of its box.
+struct Part {
+    glm::dvec3 center{0.0};
+    double size = 0;
+    double weight = 0;
 };
 
-/// The box of a shape in world coordinates; of a sphere exactly, of the others by their corners.
-Box shape_box(const Shape &shape) {
-    Box box;
-    const auto add = [&](double x, double y, double z) {
-        box.add(glm::dvec3(shape.to_world * glm::dvec4(x, y, z, 1)));
-    };
-    if (shape.kind == ShapeKind::mesh) {
-        for (const glm::dvec3 &p : shape.mesh->positions)
-            add(p.x, p.y, p.z);
-        return box;
+/// Triangles of a mesh that stand for all of it.
+constexpr std::size_t sampled_triangles = 512;
+/// What shines counts this much: a small lamp far away is seen by its light alone.
+constexpr double share_of_emitters = 0x1p-10;
+/// Shapes smaller than this share of the median one count as much as one of that size.
+constexpr double least_size = 0x1p-6;
+
+double diagonal(const Box &box) {
+    return glm::length(box.high - box.low);
+}
+
+void add_mesh(const Shape &shape, double weight, std::vector<Part> &parts) {
+    const auto &triangles = shape.mesh->triangles;
+    const std::size_t stride = (triangles.size() + sampled_triangles - 1) / sampled_triangles;
+    const std::size_t first = parts.size();
+    double inverse_sizes = 0;
+    for (std::size_t i = 0; i < triangles.size(); i += stride) {
+        Box box;
+        for (const std::uint32_t vertex : triangles[i])
+            box.add(glm::dvec3(shape.to_world * glm::dvec4(shape.mesh->positions[vertex], 1)));
+        const double size = diagonal(box);
+        if (!(size > 0) || !std::isfinite(size))
+            continue;
+        inverse_sizes += 1 / size;
+        parts.push_back({(box.low + box.high) * 0.5, size, 1 / size});
     }
-    const double depth = shape.kind == ShapeKind::sphere ? 1 : 0;
-    for (int corner = 0; corner < 8; ++corner)
-        add((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
-            (corner & 4) != 0 ? depth : -depth);
-    return box;
+    for (std::size_t i = first; i < parts.size(); ++i)
+        parts[i].weight *= weight / inverse_sizes;
+}
+
+/// The pieces, each weighted by the inverse of its size: the smaller it is, the more precision it
+/// needs. A mesh weighs as much as a sphere of its size, wherever most of its small triangles are.
+std::vector<Part> parts_of(const Scene &scene) {
+    struct Whole {
+        const Shape *shape;
+        Box box;
+        double size;
+    };
+    std::vector<Whole> wholes;
+    std::vector<double> sizes;
+    for (const Shape &shape : scene.shapes) {
+        const Box box = shape_box(shape);
+        const double size = diagonal(box);
+        if (box.empty() || !(size > 0) || !std::isfinite(size))
+            continue;
+        wholes.push_back({&shape, box, size});
+        sizes.push_back(size);
+    }
+    if (wholes.empty())
+        return {};
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    const double least = least_size * *middle;
+
+    std::vector<Part> parts;
+    for (const Whole &whole : wholes) {
+        const double share = whole.shape->emitter == none ? 1 : share_of_emitters;
+        const double weight = share / std::max(whole.size, least);
+        if (whole.shape->kind == ShapeKind::mesh)
+            add_mesh(*whole.shape, weight, parts);
+        else
+            parts.push_back({(whole.box.low + whole.box.high) * 0.5, whole.size, weight});
+    }
+    return parts;
+}
+
+/// The value at which the weights of the parts below reach one half of all.
+template <typename Value> double weighted_median(const std::vector<Part> &parts, Value value) {
+    std::vector<std::pair<double, double>> sorted;
+    double total = 0;
+    for (const Part &part : parts) {
+        sorted.emplace_back(value(part), part.weight);
+        total += part.weight;
+    }
+    std::sort(sorted.begin(), sorted.end());
+    double below = 0;
+    for (const auto &[at, weight] : sorted) {
+        below += weight;
+        if (below >= total / 2)
+            return at;
+    }
+    return sorted.back().first;
 }
 
 } // namespace
 
 Placement choose_placement(const Scene &scene) {
-    const glm::dvec3 eye(scene.sensor.to_world[3]);
-    std::vector<Box> boxes;
-    for (const Shape &shape : scene.shapes)
-        boxes.push_back(shape_box(shape));
-    for (const Emitter &emitter : scene.emitters)
-        if (emitter.kind == EmitterKind::point)
-            boxes.emplace_back().add(emitter.position);
-
-    // Precision is wanted where the camera looks at things from near: parts of huge shapes (a
-    // planet as the ground) that are farther away than every shape's nearest point do not count.
-    double reach = 0;
-    for (const Box &box : boxes)
-        if (!box.empty())
-            reach = std::max(reach, box.distance(eye));
-    if (reach == 0)
-        for (const Box &box : boxes)
-            if (!box.empty())
-                reach = std::max(reach, glm::length(box.high - box.low));
-    Box all;
-    all.add(eye);
-    for (const Box &box : boxes)
-        if (!box.empty()) {
-            all.add(glm::clamp(box.low, eye - 2 * reach, eye + 2 * reach));
-            all.add(glm::clamp(box.high, eye - 2 * reach, eye + 2 * reach));
-        }
-
     Placement placement;
-    placement.center = (all.low + all.high) / 2.0;
-    const double radius = glm::length(all.high - all.low) / 2;
-    if (std::isfinite(radius) && radius > 0)
-        placement.scale = std::exp2(-std::ceil(std::log2(radius)));
+    const std::vector<Part> parts = parts_of(scene);
+    if (parts.empty())
+        return placement;
+    for (int axis = 0; axis < 3; ++axis)
+        placement.center[axis] =
+            weighted_median(parts, [axis](const Part &part) { return part.center[axis]; });
+    const double radius = weighted_median(parts, [&](const Part &part) {
+        return glm::length(part.center - placement.center) + part.size / 2;
+    });
+    placement.scale = std::exp2(-std::ceil(std::log2(radius)));
     return placement;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -122,4 +122,4 @@ bool ShadowlessPlanars::contains(std::size_t shape) const {
     return static_cast<int>(shape) == sole_light_ || is_outer(planar);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -2,12 +2,13 @@
 /// Walls, floors and ceilings cast no shadows into their own room.
 
 #include "scene/scene.h"
+#include "shared/shared_types.h"
 
 #include <array>
 #include <cstddef>
 #include <map>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// The rectangles and disks of a scene that never come between a point of a surface and a point of
 /// a light: all shapes and point lights lie in their plane or on one side of it, or they are the
@@ -30,4 +31,4 @@ private:
     std::map<const Mesh *, std::array<glm::dvec3, 8>> boxes_; ///< their corners, in their own space
 };
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 #include <numeric>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -309,4 +309,4 @@ void PathTracer::complete_profile(const RenderStats &stats) {
     profile.peak = measure_peak(entry_, context_, queue_);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -16,7 +16,7 @@
 #include <memory>
 #include <vector>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// The side of a work-item's square. Splatted filters need one that reaches no further than the
 /// next.
@@ -85,4 +85,4 @@ private:
     std::chrono::steady_clock::time_point last_finish_{};
 };
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

@@ -1,4 +1,4 @@
-#include "render.h"
+#include "render_at_precision.h"
 
 #include "flatten/flat_scene.h"
 #include "log.h"
@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -51,7 +51,8 @@ RenderResult render_flat(FlatScene flat, const FilmSettings &film, int spp,
     RenderStats &stats = result.stats;
     stats.device = entry.name;
     stats.seconds_device = seconds_device;
-    flat.config.LANES = options.lanes > 0 ? options.lanes : natural_lanes(entry);
+    flat.config.DOUBLE_PRECISION = CLR_DOUBLE;
+    flat.config.LANES = CLR_DOUBLE ? 1 : options.lanes > 0 ? options.lanes : natural_lanes(entry);
     flat.config.TILE = tile_of(entry, flat.config);
     flat.config.SAMPLER = options.independent_sampler ? 1 : 0;
     flat.config.PROFILE = options.profile != nullptr ? 1 : 0;
@@ -105,7 +106,7 @@ RenderResult render_flat(FlatScene flat, const FilmSettings &film, int spp,
 
 } // namespace
 
-std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
+std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options) {
     FlatScene flat = flatten(scene, flatten_options(options));
     build_hierarchy(flat);
     flat.config.TILE = CLR_LEAST_TILE;
@@ -120,16 +121,13 @@ std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options
     return flat.bytes() + band_bytes(tiles_of(flat), bands_of(entry, flat, options).front());
 }
 
-RenderResult render_scene(const Scene &scene, const RenderOptions &options) {
-    Scene copy = scene;
-    return render_scene(std::move(copy), options);
-}
-
-RenderResult render_scene(Scene &&scene, const RenderOptions &options) {
+RenderResult render_at_precision(Scene &&scene, const RenderOptions &options) {
     Stopwatch watch(options.profile);
     const DeviceEntry entry = choose_device(options.device);
     const double seconds_device = watch.lap("open the device");
     log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
+    if (CLR_DOUBLE != 0 && !entry.has_double)
+        throw DeviceError(fmt::format("{} has no double precision (cl_khr_fp64)", entry.name));
     const int spp = options.spp > 0 ? options.spp : scene.sample_count;
     const FilmSettings film = scene.film;
     FlatScene flat = flatten(scene, flatten_options(options));
@@ -137,4 +135,4 @@ RenderResult render_scene(Scene &&scene, const RenderOptions &options) {
     return render_flat(std::move(flat), film, spp, options, entry, watch, seconds_device);
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

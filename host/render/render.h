@@ -18,6 +18,7 @@ struct RenderOptions {
     std::uint32_t seed = 0;
     int lanes = 0;                    ///< 1, 4, 8 or 16; 0: what suits the device
     std::string device = "auto";      ///< see choose_device()
+    bool double_precision = false;    ///< all in double, with one lane: slow
     bool brute_force = false;         ///< test every triangle
     bool pixel_centers = false;       ///< all samples at pixel centres
     bool independent_sampler = false; ///< in place of Sobol' points

@@ -15,6 +15,9 @@
 #define BVH_NO_PRIM 0xffffffffu
 /* Coordinates beyond this are neither stored nor traversed, so that no product overflows. */
 #define BVH_COORDINATE_LIMIT 1e16f
+/* Boxes are wider than their contents by this share of their largest coordinate; see bvh_ray.clh.
+ */
+#define BVH_WIDEN 2.4e-7f
 /* An empty child's box is turned inside out: from +this to -this. */
 #define BVH_EMPTY_BOUND 1e18f
 
@@ -28,30 +31,29 @@
 #define BVH_CHILD_SPHERES 2u
 #define BVH_CHILD_EMPTY 3u
 
-CLR_SHARED_BEGIN
+CLR_PRECISION_BEGIN
 
 typedef struct CLR_ALIGNED(64) BvhNode {
     float planes[6][BVH_WIDTH]; /*   0: boxes of the children */
     uint child[BVH_WIDTH];      /* 192: references, see bvh_child_* */
     uint parent;                /* 224: index of the node above; the root names itself */
-    float extent;               /* 228: largest |coordinate| of the whole tree */
-    float bounds[6]; /* 232: of the root only: lower and upper corner of the whole tree */
+    float bounds[6]; /* 228: of the root only: lower and upper corner of the whole tree */
 } BvhNode;
-CLR_STATIC_SIZE(BvhNode, 256);
+CLR_STATIC_WORDS(BvhNode, 64);
 
 /* Unused lanes repeat lane 0, primitive and all: hitting it twice changes nothing. */
 typedef struct CLR_ALIGNED(64) TriangleBlock {
-    float vertex[3][3][BVH_WIDTH]; /*   0: corner, axis, lane */
-    uint prim[BVH_WIDTH];          /* 288 */
+    clr_real vertex[3][3][BVH_WIDTH]; /*   0: corner, axis, lane */
+    clr_word prim[BVH_WIDTH];         /* 288 */
 } TriangleBlock;
-CLR_STATIC_SIZE(TriangleBlock, 320);
+CLR_STATIC_WORDS(TriangleBlock, 80);
 
 typedef struct CLR_ALIGNED(32) SphereBlock {
-    float center[3][BVH_WIDTH]; /*   0: axis, lane */
-    float radius[BVH_WIDTH];    /*  96 */
-    uint prim[BVH_WIDTH];       /* 128 */
+    clr_real center[3][BVH_WIDTH]; /*   0: axis, lane */
+    clr_real radius[BVH_WIDTH];    /*  96 */
+    clr_word prim[BVH_WIDTH];      /* 128 */
 } SphereBlock;
-CLR_STATIC_SIZE(SphereBlock, 160);
+CLR_STATIC_WORDS(SphereBlock, 40);
 
 /* A reference to a node or a block; `index` has 30 bits. */
 static inline uint bvh_child(uint kind, uint index) {
@@ -64,5 +66,5 @@ static inline uint bvh_child_index(uint child) {
     return child & 0x3fffffffu;
 }
 
-CLR_SHARED_END
+CLR_PRECISION_END
 #endif

@@ -4,7 +4,7 @@
 
 #include "shared/shared_types.h"
 
-CLR_SHARED_BEGIN
+CLR_PRECISION_BEGIN
 
 /* The samples of a pixel are summed in blocks, each from zero and in an order that depends on
    nothing but the scene and the width of the kernel; block b begins with sample CLR_BLOCK_START(b),
@@ -18,9 +18,9 @@ CLR_SHARED_BEGIN
    corner + x step_x + y step_y, whose component along the axis is 1. */
 typedef struct {
     float origin[3];
-    float near_clip; /* along the axis; 0 where the scene states none */
+    float near_clip; /* along the axis, from where camera rays start */
     float corner[3];
-    float far_clip; /* along the axis; INFINITY where the scene states none */
+    float far_clip; /* likewise; INFINITY where the scene states none */
     float step_x[3];
     float aperture_radius;
     float step_y[3];
@@ -32,31 +32,43 @@ typedef struct {
     float lens_y[3];
     float shadow_free_distance; /* from the only light, the first SHADOW_FREE_COUNT spheres
                                    cannot come between it and a point that is nearer */
-    float env_radiance[3];      /* of a constant environment */
-    float env_probability;      /* that light sampling chooses the environment */
-    float env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
-    uint env_width;             /* pixels of the map */
+    clr_real env_radiance[3];      /* of a constant environment */
+    clr_real env_probability;      /* that light sampling chooses the environment */
+    clr_real env_rotation[12];     /* rows of world-to-environment, each followed by 0 */
+    uint env_width;                /* pixels of the map */
     uint env_height;
-    float env_density; /* of light sampling, per solid angle: this times the weight of the place,
+    clr_real env_density; /* of light sampling, per solid angle: this times the weight of the place,
                           times the sines of the row's middle over that of the place */
-    int max_depth;     /* edges of the longest path; INT_MAX: unbounded */
-    int rr_depth;      /* roulette from this depth on; INT_MAX: never */
-    uint width;        /* of the picture (the crop window), pixels */
+    int max_depth;        /* edges of the longest path; INT_MAX: unbounded */
+    int rr_depth;         /* roulette from this depth on; INT_MAX: never */
+    uint width;           /* of the picture (the crop window), pixels */
     uint height;
     int crop_x; /* of the crop window within the whole film */
     int crop_y;
     uint seed;
-    uint prim_bvh_sphere; /* first primitive that is a sphere in the BVH */
-    uint total_samples;   /* a pixel, over all launches */
-    float filter_radius;  /* pixels */
-    uint triangle_blocks; /* in the BVH's leaves */
+    uint prim_bvh_sphere;   /* first primitive that is a sphere in the BVH */
+    uint total_samples;     /* a pixel, over all launches */
+    clr_real filter_radius; /* pixels */
+    uint triangle_blocks;   /* in the BVH's leaves */
     uint sphere_blocks;
-    float final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
+    clr_real final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
                               looks small */
-    int film_exponent;     /* the film's unit of colour is 2^film_exponent */
-    uint pad2[3];
+    float
+        planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
+    float lens_share;    /* of the offset on the lens that is left at the start of a ray */
+    float skipped_depth; /* from the near clip plane to the start, where that is farther away */
+    float first_leg;     /* HAS_FAR_CAMERA: depth of the start less the near clip distance */
+    float start[3];      /* the film's corner, at the depth where camera rays start */
+    float near_of_eye;   /* HAS_FAR_CAMERA: the near clip distance from the eye */
+    float start_x[3];    /* a pixel's width there */
+    float pad0;
+    float start_y[3];
+    int film_exponent; /* the film's unit of colour is 2^film_exponent */
 } FrameData;
-CLR_STATIC_SIZE(FrameData, 256);
+CLR_STATIC_SIZE(FrameData, 304);
+
+CLR_SHARED_END
+CLR_SHARED_BEGIN
 
 /* Sums over the samples of a pixel, exact: the value of each block of samples is cut off to a
    multiple of a power of two, once, and added as an integer in two's complement, the lowest word

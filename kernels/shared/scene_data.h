@@ -6,7 +6,7 @@
 #include "shared/shared_types.h"
 #include "shared/table_size.h"
 
-CLR_SHARED_BEGIN
+CLR_PRECISION_BEGIN
 
 /* "No such index" in every uint field. */
 #define CLR_NONE 0xffffffffu
@@ -16,35 +16,39 @@ CLR_SHARED_BEGIN
 
 /* A sphere; a negative radius turns its normal inwards. */
 typedef struct {
-    float center[3];
-    float radius;
+    clr_real center[3];
+    clr_real radius;
 } Sphere;
-CLR_STATIC_SIZE(Sphere, 16);
+CLR_STATIC_WORDS(Sphere, 4);
 
-/* What a ray is tested against. */
+/* What a ray is tested against. Of a huge sphere (HUGE_COUNT) the first entry holds a and h, the
+   second one curvature and radius, see sphere.clh. */
 typedef struct {
-    float center[3];
-    float radius2;
+    clr_real center[3];
+    clr_real radius2;
 } SphereTest;
-CLR_STATIC_SIZE(SphereTest, 16);
+CLR_STATIC_WORDS(SphereTest, 4);
 
 /* A rectangle or a disk: points origin + a du + b dv, with |a|, |b| <= 1 or a^2 + b^2 <= 1.
-   `ra` and `rb` are the dual vectors: a = ra . (p - origin). */
+   `ra` and `rb` are the dual vectors: a = ra . (p - origin), and `half` how far it reaches along
+   the coordinate axes: |du| + |dv|, by components. These three are of the outline that rays are
+   tested against, which is some units in the last place larger than the shape: so no ray passes
+   between two that share an edge. `distance` is normal . origin. */
 typedef struct {
     float origin[3];
     uint is_disk;
     float normal[3];
     float area;
     float du[3];
-    float half_x; /* how far it reaches along the coordinate axes: |du| + |dv|, by components */
+    float half_x;
     float dv[3];
     float half_y;
     float ra[3];
     float half_z;
     float rb[3];
-    float pad;
+    float distance;
 } Planar;
-CLR_STATIC_SIZE(Planar, 96);
+CLR_STATIC_WORDS(Planar, 24);
 
 /* What a primitive belongs to. The materials are those of the two sides, front | back << 16;
    CLR_NO_MATERIAL reflects nothing. */
@@ -55,9 +59,11 @@ typedef struct {
 } ShapeInfo;
 CLR_STATIC_SIZE(ShapeInfo, 8);
 
-/* What a hit on a lane-wise primitive needs, in one place: a sphere's centre and radius or a
-   planar's normal and its distance from the origin, the shape's info, and the first half of the
-   material of its sides, where they do not differ (MATERIALS_IN_RECORDS). */
+/* What a hit on a lane-wise primitive needs, in one place: a sphere's centre and radius (of a huge
+   one a and h, see sphere.clh) or a planar's normal and its distance from the origin, the shape's
+   info, the first half of the material of its sides, where they do not differ
+   (MATERIALS_IN_RECORDS), and a planar's dual vectors: its coordinates of the point p are
+   ra . p + frame[3] and rb . p + frame[7]. */
 typedef struct {
     float place[3]; /* centre or normal */
     float size;     /* radius or distance */
@@ -66,8 +72,9 @@ typedef struct {
     uint is_disk;
     float inv_size; /* of a sphere */
     float material[8];
+    float frame[8]; /* of a planar */
 } PrimitiveRecord;
-CLR_STATIC_SIZE(PrimitiveRecord, 64);
+CLR_STATIC_SIZE(PrimitiveRecord, 96);
 
 #define CLR_BSDF_DIFFUSE 0u
 #define CLR_BSDF_CONDUCTOR 1u
@@ -78,16 +85,16 @@ CLR_STATIC_SIZE(PrimitiveRecord, 64);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
    Dielectric: eta[0] is interior over exterior index, eta[1] its inverse. */
 typedef struct {
-    float color[3];
-    uint kind;
-    float color2[3];
-    uint texture;
-    float eta[3];
-    uint texture2;
-    float k[3];
-    uint pad;
+    clr_real color[3];
+    clr_word kind;
+    clr_real color2[3];
+    clr_word texture;
+    clr_real eta[3];
+    clr_word texture2;
+    clr_real k[3];
+    clr_word pad;
 } Material;
-CLR_STATIC_SIZE(Material, 64);
+CLR_STATIC_WORDS(Material, 16);
 
 #define CLR_LIGHT_POINT 0u
 #define CLR_LIGHT_SPHERE 1u
@@ -99,47 +106,47 @@ CLR_STATIC_SIZE(Material, 64);
    that of a point, the centre of a sphere, or the middle of the only light. Point: radiance holds
    the intensity, times the square of the unit of length. Sphere: `area` holds the radius. */
 typedef struct {
-    float position[3];
-    uint kind;
-    float radiance[3];
-    uint texture;
-    uint prim;
-    uint trail;
-    float area;
-    uint shape; /* of a sphere */
+    clr_real position[3];
+    clr_word kind;
+    clr_real radiance[3];
+    clr_word texture;
+    clr_word prim;
+    clr_word trail;
+    clr_real area;
+    clr_word shape; /* of a sphere */
 } Light;
-CLR_STATIC_SIZE(Light, 48);
+CLR_STATIC_WORDS(Light, 12);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
    triangle that is the only light, 1 for spheres and for the other triangles (kind says which), 0
    where it is never sampled. The light is `light`, for a triangle the primitive's number added. */
 typedef struct {
-    float radiance[3];
-    uint texture;
-    float density;
-    uint kind;
-    float radius;
-    uint light;
-    float center[3];
-    uint pad[5];
+    clr_real radiance[3];
+    clr_word texture;
+    clr_real density;
+    clr_word kind;
+    clr_real radius;
+    clr_word light;
+    clr_real center[3];
+    clr_word pad[5];
 } EmitterInfo;
-CLR_STATIC_SIZE(EmitterInfo, 64);
+CLR_STATIC_WORDS(EmitterInfo, 16);
 
 /* An emissive triangle: v0 and two edges, front side by their cross product. With vertex normals
    (`smooth`), `normals` tell the front side as they do for shading. */
 typedef struct {
-    float v0[3];
-    uint smooth;
-    float e1[3];
-    float pad0;
-    float e2[3];
-    float pad1;
-    float normals[9];
-    float uvs[6];
-    float pad2;
+    clr_real v0[3];
+    clr_word smooth;
+    clr_real e1[3];
+    clr_real pad0;
+    clr_real e2[3];
+    clr_real pad1;
+    clr_real normals[9];
+    clr_real uvs[6];
+    clr_real pad2;
 } LightTriangle;
-CLR_STATIC_SIZE(LightTriangle, 112);
+CLR_STATIC_WORDS(LightTriangle, 28);
 
 /* A node of the light tree: bounds of both children. Of each: the sphere around its lights and
    their summed intensity (the largest radiant intensity in any direction, luminance); the index of
@@ -148,19 +155,19 @@ CLR_STATIC_SIZE(LightTriangle, 112);
 #define CLR_LIGHT_LEAF 0x80000000u
 #define CLR_LIGHT_TREE_LEVELS 32
 typedef struct {
-    float center[3];
-    float radius2;
-    float intensity;
-    uint child;
-    float cosine;
-    float sine;
+    clr_real center[3];
+    clr_real radius2;
+    clr_real intensity;
+    clr_word child;
+    clr_real cosine;
+    clr_real sine;
 } LightBounds;
-CLR_STATIC_SIZE(LightBounds, 32);
+CLR_STATIC_WORDS(LightBounds, 8);
 typedef struct {
     LightBounds bounds[2];
-    float axis[2][4];
+    clr_real axis[2][4];
 } LightNode;
-CLR_STATIC_SIZE(LightNode, 96);
+CLR_STATIC_WORDS(LightNode, 24);
 
 #define CLR_TEXTURE_BITMAP_U8 0u
 #define CLR_TEXTURE_BITMAP_F32 1u
@@ -173,19 +180,19 @@ CLR_STATIC_SIZE(LightNode, 96);
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
    bytes in the u8 array (through decode table `decode`: 0 linear, 1 sRGB), or triples of floats. */
 typedef struct {
-    float to_uv[6];
+    clr_real to_uv[6];
     uint kind;
     uint wrap;
     uint width;
     uint height;
     uint offset;
     uint nearest;
-    float color0[3];
+    clr_real color0[3];
     uint decode;
-    float color1[3];
+    clr_real color1[3];
     uint pad;
 } TextureInfo;
-CLR_STATIC_SIZE(TextureInfo, 80);
+CLR_STATIC_SIZE(TextureInfo, CLR_EITHER(80, 136));
 
-CLR_SHARED_END
+CLR_PRECISION_END
 #endif

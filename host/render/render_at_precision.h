@@ -1,0 +1,13 @@
+#pragma once
+/// The functions of render.h, compiled once for each precision.
+
+#include "render.h"
+#include "shared/shared_types.h"
+
+namespace clrender::inline CLR_PRECISION {
+
+std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options);
+
+RenderResult render_at_precision(Scene &&scene, const RenderOptions &options);
+
+} // namespace clrender::inline CLR_PRECISION
