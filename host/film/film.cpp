@@ -1,7 +1,6 @@
 #include "film.h"
 
 #include "film_sums.h"
-#include "shared/film_filter.h"
 
 #include <algorithm>
 #include <array>
@@ -53,8 +52,9 @@ Channels mean(const PixelSums &sums) {
 std::vector<Channels> scatter(const Film &film) {
     std::vector<Channels> all;
     all.reserve(film.pixels.size());
+    const FilmUnits units(film.exponent);
     for (const FilmPixel &pixel : film.pixels) {
-        const PixelSums sums(pixel, film.exponent);
+        const PixelSums sums(pixel, units);
         Channels &scatter = all.emplace_back();
         for (int c = 0; c < 4; ++c)
             scatter[static_cast<std::size_t>(c)] =
@@ -110,29 +110,12 @@ Image make_image(int width, int height, const std::vector<Rgb> &rows, bool alpha
 
 } // namespace
 
-std::vector<double> filter_spread(std::span<const float> table, double radius, int border) {
-    // The device's step function, at places so close that no step is missed.
-    constexpr int places = 4096;
-    const double levels = CLR_FILTER_LEVELS / radius;
-    std::vector<double> spread;
-    for (int offset = -border; offset <= border; ++offset) {
-        double sum = 0;
-        for (int i = 0; i < places; ++i) {
-            const double distance = std::abs(offset + 0.5 - (i + 0.5) / places);
-            const int level = std::min(static_cast<int>(distance * levels), CLR_FILTER_LEVELS);
-            const double value = table[static_cast<std::size_t>(CLR_FILTER_VALUES + level)];
-            sum += value * value;
-        }
-        spread.push_back(sum / places);
-    }
-    return spread;
-}
-
 Image film_mean(const Film &film, PixelFormat format) {
     std::vector<Channels> means;
     means.reserve(film.pixels.size());
+    const FilmUnits units(film.exponent);
     for (const FilmPixel &pixel : film.pixels)
-        means.push_back(mean(PixelSums(pixel, film.exponent)));
+        means.push_back(mean(PixelSums(pixel, units)));
     return make_image(
         film.width, film.height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
@@ -147,8 +130,9 @@ Image film_variance(const Film &film, PixelFormat format) {
     std::vector<Channels> values = scatter(film);
     values = spread_along(values, film.spread, width, 1, height, width);
     values = spread_along(values, film.spread, height, width, width, 1);
+    const FilmUnits units(film.exponent);
     const auto deviation = [&](std::size_t i, std::size_t c) {
-        const double weight = PixelSums(film.pixels[i], film.exponent).weight();
+        const double weight = PixelSums(film.pixels[i], units).weight();
         return weight != 0 ? std::sqrt(values[i][c]) / std::abs(weight)
                            : std::numeric_limits<double>::infinity();
     };

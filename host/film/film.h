@@ -15,13 +15,10 @@ struct Film {
     int exponent = 0; ///< FrameData::film_exponent
     /// What a sample adds to the variance of the pixels around it, along one axis of the separable
     /// filter, the pixel it lies in in the middle: the mean of the squared filter over the sample's
-    /// places in its pixel. {1} where a sample counts for its own pixel alone.
+    /// places in its pixel (filter_spread()). {1} where a sample counts for its own pixel alone.
     std::vector<double> spread{1.0};
     std::vector<FilmPixel> pixels;
 };
-
-/// Film::spread of a splatted filter, from its table as the device reads it.
-std::vector<double> filter_spread(std::span<const float> table, double radius, int border);
 
 /// The weighted mean of each pixel, in the channels of `format`; a pixel without samples is black.
 Image film_mean(const Film &film, PixelFormat format);

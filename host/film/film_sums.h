@@ -5,12 +5,17 @@
 
 namespace clrender {
 
-/// The sums of one pixel; colours in the scene's own unit, given the exponent of the film's.
-/// Channels: R, G, B, alpha.
+/// What the lowest bits of a film's sums are worth, given FrameData::film_exponent.
+struct FilmUnits {
+    double colour, alpha, colour_scatter, alpha_scatter;
+
+    explicit FilmUnits(int film_exponent);
+};
+
+/// The sums of one pixel. Channels: R, G, B, alpha.
 class PixelSums {
 public:
-    PixelSums(const FilmPixel &pixel, int film_exponent)
-        : pixel_(pixel), exponent_(film_exponent) {}
+    PixelSums(const FilmPixel &pixel, const FilmUnits &units) : pixel_(pixel), units_(units) {}
 
     /// Of the filter's weight times the channel.
     [[nodiscard]] double colour(int channel) const;
@@ -22,7 +27,7 @@ public:
 
 private:
     const FilmPixel &pixel_;
-    int exponent_;
+    const FilmUnits &units_;
 };
 
 /// Adds the sums of other samples of the same pixel, exactly: sums of parts are the same bits

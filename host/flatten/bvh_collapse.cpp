@@ -287,7 +287,7 @@ private:
 
     /// The box, widened by what the tests of rays lose to rounding.
     static void set_box(BvhNode &node, int slot, const Box &box) {
-        float largest = 0;
+        clr_real largest = 0;
         for (int axis = 0; axis < 3; ++axis) {
             largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
         }

@@ -22,7 +22,7 @@ struct Placement {
     double scale = 1;
 
     [[nodiscard]] glm::dvec3 exact(const glm::dvec3 &p) const { return (p - center) * scale; }
-    [[nodiscard]] glm::vec3 apply(const glm::dvec3 &p) const { return glm::vec3(exact(p)); }
+    [[nodiscard]] Vec3 apply(const glm::dvec3 &p) const { return Vec3(exact(p)); }
 };
 
 /// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.

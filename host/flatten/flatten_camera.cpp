@@ -1,7 +1,7 @@
 #include "film_filter.h"
 #include "flatten_parts.h"
 #include "scene/limits.h"
-#include "shape_bounds.h"
+#include "scene/shape_bounds.h"
 #include "shared/film_filter.h"
 
 #include <algorithm>
@@ -101,7 +101,7 @@ void flatten_integrator(Flattening &work) {
 }
 
 /// A pixel's width on the image plane at distance 1 from which on float32 directions do for pixels.
-constexpr double narrow_pixel = 0x1p-17;
+constexpr double narrow_pixel = CLR_EITHER(0x1p-17, 0x1p-46);
 
 /// The depths between which a shape lies, seen from the eye along `axis`.
 struct DepthRange {
@@ -193,7 +193,7 @@ void flatten_camera(Flattening &work) {
     store(f.corner, corner);
 
     const double unit = flat.placement.scale;
-    f.length_unit = static_cast<float>(1 / unit);
+    f.length_unit = static_cast<clr_real>(1 / unit);
     flat.config.HAS_CLIP = sensor.near_clip || sensor.far_clip ? 1 : 0;
     if (sensor.kind == SensorKind::thinlens) {
         flat.config.HAS_LENS = sensor.aperture_radius > 0 ? 1 : 0;
@@ -207,15 +207,15 @@ void flatten_camera(Flattening &work) {
     store(f.start, eye + corner * (unit * start));
     store(f.start_x, step_x * (unit * start));
     store(f.start_y, step_y * (unit * start));
-    f.lens_share = static_cast<float>(1 - start / sensor.focus_distance);
+    f.lens_share = static_cast<clr_real>(1 - start / sensor.focus_distance);
     const bool depth = scene.integrator.kind == IntegratorKind::depth;
     const double near = sensor.near_clip.value_or(depth ? depth_near_clip : 0);
     const double far = sensor.far_clip.value_or(std::numeric_limits<double>::infinity());
-    f.near_clip = static_cast<float>(unit * std::max(near - start, 0.0));
-    f.far_clip = static_cast<float>(unit * (far - start));
-    f.skipped_depth = static_cast<float>(unit * std::max(start - near, 0.0));
-    f.near_of_eye = static_cast<float>(unit * near);
-    f.first_leg = static_cast<float>(unit * (std::min(start, far) - near));
+    f.near_clip = static_cast<clr_real>(unit * std::max(near - start, 0.0));
+    f.far_clip = static_cast<clr_real>(unit * (far - start));
+    f.skipped_depth = static_cast<clr_real>(unit * std::max(start - near, 0.0));
+    f.near_of_eye = static_cast<clr_real>(unit * near);
+    f.first_leg = static_cast<clr_real>(unit * (std::min(start, far) - near));
 }
 
 } // namespace clrender::inline CLR_PRECISION

@@ -1,7 +1,7 @@
 #include "flatten_parts.h"
 #include "log.h"
+#include "scene/shape_bounds.h"
 #include "shadowless_planars.h"
-#include "shape_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +21,11 @@ constexpr std::ptrdiff_t few_primitives = 16;
 constexpr double unseen = CLR_EITHER(0x1p-22, 0x1p-51);
 
 /// The outline of planars, for rays, is this share of their reach larger: eight units of rounding.
-constexpr double planar_wider = 0x1p-21;
+constexpr double planar_wider = CLR_EITHER(0x1p-21, 0x1p-50);
 /// Hits nearer to it than this share are moved away from it (PLANAR_MARGIN in planar.clh).
-constexpr double planar_margin = 0x1p-18;
+constexpr double planar_margin = CLR_EITHER(0x1p-18, 0x1p-47);
 
-constexpr float missing = std::numeric_limits<float>::quiet_NaN();
+constexpr clr_real missing = std::numeric_limits<clr_real>::quiet_NaN();
 
 void store(clr_real (&out)[3], const glm::dvec3 &v) {
     out[0] = static_cast<clr_real>(v.x);
@@ -91,11 +91,11 @@ Planar flatten_planar(const Shape &shape, const Placement &placement) {
     if (shape.flip_normals)
         normal = -normal;
     p.is_disk = shape.kind == ShapeKind::disk ? 1 : 0;
-    p.area = static_cast<float>(glm::length(across) * (p.is_disk != 0 ? M_PI : 4));
+    p.area = static_cast<clr_real>(glm::length(across) * (p.is_disk != 0 ? M_PI : 4));
     const glm::dvec3 origin = placement.exact(glm::dvec3(shape.to_world[3]));
     store(p.origin, origin);
     store(p.normal, normal);
-    p.distance = static_cast<float>(glm::dot(normal, origin));
+    p.distance = static_cast<clr_real>(glm::dot(normal, origin));
     store(p.du, du);
     store(p.dv, dv);
     // The outline that rays are tested against is larger by what the test may lose to rounding.
@@ -107,14 +107,14 @@ Planar flatten_planar(const Shape &shape, const Placement &placement) {
     store(p.ra, glm::cross(dv, across) / area2 / stretch_u);
     store(p.rb, glm::cross(across, du) / area2 / stretch_v);
     const glm::dvec3 half = glm::abs(du) * stretch_u + glm::abs(dv) * stretch_v;
-    p.half_x = static_cast<float>(half.x);
-    p.half_y = static_cast<float>(half.y);
-    p.half_z = static_cast<float>(half.z);
+    p.half_x = static_cast<clr_real>(half.x);
+    p.half_y = static_cast<clr_real>(half.y);
+    p.half_z = static_cast<clr_real>(half.z);
     return p;
 }
 
 /// PrimitiveRecord::frame of a rectangle or disk.
-void store_frame(float (&out)[8], const Shape &shape, const Placement &placement) {
+void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placement) {
     const glm::dvec3 du = glm::dvec3(shape.to_world[0]) * placement.scale;
     const glm::dvec3 dv = glm::dvec3(shape.to_world[1]) * placement.scale;
     const glm::dvec3 across = glm::cross(du, dv);
@@ -122,11 +122,11 @@ void store_frame(float (&out)[8], const Shape &shape, const Placement &placement
     const glm::dvec3 ra = glm::cross(dv, across) / glm::dot(across, across);
     const glm::dvec3 rb = glm::cross(across, du) / glm::dot(across, across);
     for (int c = 0; c < 3; ++c) {
-        out[c] = static_cast<float>(ra[c]);
-        out[4 + c] = static_cast<float>(rb[c]);
+        out[c] = static_cast<clr_real>(ra[c]);
+        out[4 + c] = static_cast<clr_real>(rb[c]);
     }
-    out[3] = static_cast<float>(-glm::dot(ra, origin));
-    out[7] = static_cast<float>(-glm::dot(rb, origin));
+    out[3] = static_cast<clr_real>(-glm::dot(ra, origin));
+    out[7] = static_cast<clr_real>(-glm::dot(rb, origin));
 }
 
 /// The rectangle as two triangles, for scenes with many.
@@ -353,7 +353,7 @@ void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
         if (p.area > 0)
             rim = std::min(rim, 1 - margin / std::min(glm::length(du), glm::length(dv)));
     }
-    flat.frame.planar_rim = static_cast<float>(std::max(rim, 0.0));
+    flat.frame.planar_rim = static_cast<clr_real>(std::max(rim, 0.0));
 }
 
 void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
@@ -415,9 +415,9 @@ void make_sphere_tests(FlatScene &flat, const Flattening &work) {
         const HugeSphere sphere = huge_sphere(shape_of_primitive(work, i), work);
         const double sign = sphere.radius < 0 ? -1 : 1;
         store(flat.sphere_tests[i].center, sphere.a * sign);
-        flat.sphere_tests[i].radius2 = static_cast<float>(sphere.h * sign);
-        flat.sphere_tests[spheres + i].center[0] = static_cast<float>(sign / sphere.radius);
-        flat.sphere_tests[spheres + i].center[1] = static_cast<float>(sign * sphere.radius);
+        flat.sphere_tests[i].radius2 = static_cast<clr_real>(sphere.h * sign);
+        flat.sphere_tests[spheres + i].center[0] = static_cast<clr_real>(sign / sphere.radius);
+        flat.sphere_tests[spheres + i].center[1] = static_cast<clr_real>(sign * sphere.radius);
     }
 }
 
@@ -437,7 +437,7 @@ void make_records(Flattening &work) {
             if (huge) {
                 const HugeSphere sphere = huge_sphere(shape_of_primitive(work, i), work);
                 store(r.place, sphere.a);
-                r.size = static_cast<float>(sphere.h);
+                r.size = static_cast<clr_real>(sphere.h);
             }
         } else {
             const Planar &p = flat.planars[i - spheres];

@@ -1,6 +1,6 @@
 #include "flatten_parts.h"
 
-#include "shape_bounds.h"
+#include "scene/shape_bounds.h"
 
 #include <algorithm>
 #include <cmath>

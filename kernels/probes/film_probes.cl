@@ -6,9 +6,10 @@
    highest word. `clamped` counts those that did not fit. */
 __kernel void probe_film_integers(__global const float *in, uint count, __global uint *total,
                                   __global uint *clamped) {
-    for (uint i = 0; i < count; ++i)
-        if (film_add_exactly(total, CLR_COLOUR_WORDS, (float4)(in[i])))
-            ++clamped[0];
+    for (uint i = 0; i < count; ++i) {
+        const int4 beyond = film_add_exactly(total, CLR_COLOUR_WORDS, (float4)(in[i]));
+        clamped[0] += (uint)(beyond.x & beyond.y & beyond.z & beyond.w & 1);
+    }
 }
 
 /* R, G and B of a pixel's first `samples` samples, of `base` + `step` and `base` - `step` in turn,

@@ -17,7 +17,7 @@
 #define BVH_COORDINATE_LIMIT 1e16f
 /* Boxes are wider than their contents by this share of their largest coordinate; see bvh_ray.clh.
  */
-#define BVH_WIDEN 2.4e-7f
+#define BVH_WIDEN CLR_EITHER(2.4e-7f, 4.5e-16)
 /* An empty child's box is turned inside out: from +this to -this. */
 #define BVH_EMPTY_BOUND 1e18f
 
@@ -34,10 +34,10 @@
 CLR_PRECISION_BEGIN
 
 typedef struct CLR_ALIGNED(64) BvhNode {
-    float planes[6][BVH_WIDTH]; /*   0: boxes of the children */
-    uint child[BVH_WIDTH];      /* 192: references, see bvh_child_* */
-    uint parent;                /* 224: index of the node above; the root names itself */
-    float bounds[6]; /* 228: of the root only: lower and upper corner of the whole tree */
+    clr_real planes[6][BVH_WIDTH]; /*   0: boxes of the children */
+    uint child[BVH_WIDTH];         /* 192: references, see bvh_child_* */
+    uint parent;                   /* 224: index of the node above; the root names itself */
+    clr_real bounds[6]; /* 228: of the root only: lower and upper corner of the whole tree */
 } BvhNode;
 CLR_STATIC_WORDS(BvhNode, 64);
 

@@ -17,20 +17,20 @@ CLR_PRECISION_BEGIN
    A pixel position (x, y), in pixels from the corner of the whole film, looks along
    corner + x step_x + y step_y, whose component along the axis is 1. */
 typedef struct {
-    float origin[3];
-    float near_clip; /* along the axis, from where camera rays start */
-    float corner[3];
-    float far_clip; /* likewise; INFINITY where the scene states none */
-    float step_x[3];
-    float aperture_radius;
-    float step_y[3];
-    float focus_distance;
-    float axis[3];
-    float length_unit; /* scene units per renderer's unit, for the depth integrator */
-    float lens_x[3];
-    float env_alpha; /* of camera rays that leave the scene */
-    float lens_y[3];
-    float shadow_free_distance; /* from the only light, the first SHADOW_FREE_COUNT spheres
+    clr_real origin[3];
+    clr_real near_clip; /* along the axis, from where camera rays start */
+    clr_real corner[3];
+    clr_real far_clip; /* likewise; INFINITY where the scene states none */
+    clr_real step_x[3];
+    clr_real aperture_radius;
+    clr_real step_y[3];
+    clr_real focus_distance;
+    clr_real axis[3];
+    clr_real length_unit; /* scene units per renderer's unit, for the depth integrator */
+    clr_real lens_x[3];
+    clr_real env_alpha; /* of camera rays that leave the scene */
+    clr_real lens_y[3];
+    clr_real shadow_free_distance; /* from the only light, the first SHADOW_FREE_COUNT spheres
                                    cannot come between it and a point that is nearer */
     clr_real env_radiance[3];      /* of a constant environment */
     clr_real env_probability;      /* that light sampling chooses the environment */
@@ -53,21 +53,24 @@ typedef struct {
     uint sphere_blocks;
     clr_real final_distance2; /* FINAL_BY_LIGHTS: the square of a distance from which the only light
                               looks small */
-    float
+    int film_exponent;        /* the film's unit of colour is 2^film_exponent */
+    uint pad2[3];
+    clr_real
         planar_rim; /* planars: hits with |a|, |b| or radius up to this are not near the outline */
-    float lens_share;    /* of the offset on the lens that is left at the start of a ray */
-    float skipped_depth; /* from the near clip plane to the start, where that is farther away */
-    float first_leg;     /* HAS_FAR_CAMERA: depth of the start less the near clip distance */
-    float start[3];      /* the film's corner, at the depth where camera rays start */
-    float near_of_eye;   /* HAS_FAR_CAMERA: the near clip distance from the eye */
-    float start_x[3];    /* a pixel's width there */
-    float pad0;
-    float start_y[3];
-    int film_exponent; /* the film's unit of colour is 2^film_exponent */
+    clr_real lens_share;    /* of the offset on the lens that is left at the start of a ray */
+    clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
+    clr_real first_leg;     /* HAS_FAR_CAMERA: depth of the start less the near clip distance */
+    clr_real start[3];      /* the film's corner, at the depth where camera rays start */
+    clr_real near_of_eye;   /* HAS_FAR_CAMERA: the near clip distance from the eye */
+    clr_real start_x[3];    /* a pixel's width there */
+    clr_real pad0;
+    clr_real start_y[3];
+    clr_real pad1;
 } FrameData;
-CLR_STATIC_SIZE(FrameData, 304);
+CLR_STATIC_SIZE(FrameData, CLR_EITHER(320, 576));
 
-CLR_SHARED_END
+CLR_PRECISION_END
+
 CLR_SHARED_BEGIN
 
 /* Sums over the samples of a pixel, exact: the value of each block of samples is cut off to a

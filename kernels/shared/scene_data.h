@@ -35,18 +35,18 @@ CLR_STATIC_WORDS(SphereTest, 4);
    tested against, which is some units in the last place larger than the shape: so no ray passes
    between two that share an edge. `distance` is normal . origin. */
 typedef struct {
-    float origin[3];
-    uint is_disk;
-    float normal[3];
-    float area;
-    float du[3];
-    float half_x;
-    float dv[3];
-    float half_y;
-    float ra[3];
-    float half_z;
-    float rb[3];
-    float distance;
+    clr_real origin[3];
+    clr_word is_disk;
+    clr_real normal[3];
+    clr_real area;
+    clr_real du[3];
+    clr_real half_x;
+    clr_real dv[3];
+    clr_real half_y;
+    clr_real ra[3];
+    clr_real half_z;
+    clr_real rb[3];
+    clr_real distance;
 } Planar;
 CLR_STATIC_WORDS(Planar, 24);
 
@@ -65,16 +65,16 @@ CLR_STATIC_SIZE(ShapeInfo, 8);
    (MATERIALS_IN_RECORDS), and a planar's dual vectors: its coordinates of the point p are
    ra . p + frame[3] and rb . p + frame[7]. */
 typedef struct {
-    float place[3]; /* centre or normal */
-    float size;     /* radius or distance */
-    uint materials;
-    uint emitter;
-    uint is_disk;
-    float inv_size; /* of a sphere */
-    float material[8];
-    float frame[8]; /* of a planar */
+    clr_real place[3]; /* centre or normal */
+    clr_real size;     /* radius or distance */
+    clr_word materials;
+    clr_word emitter;
+    clr_word is_disk;
+    clr_real inv_size; /* of a sphere */
+    clr_real material[8];
+    clr_real frame[8]; /* of a planar */
 } PrimitiveRecord;
-CLR_STATIC_SIZE(PrimitiveRecord, 96);
+CLR_STATIC_WORDS(PrimitiveRecord, 24);
 
 #define CLR_BSDF_DIFFUSE 0u
 #define CLR_BSDF_CONDUCTOR 1u

@@ -111,6 +111,8 @@ TEST_CASE("sums of parts are the same bits in any order") {
 
 TEST_CASE("words in two's complement are the numbers that they stand for") {
     FilmPixel pixel{};
+    const FilmUnits units(5);
+    const PixelSums sums(pixel, units);
     for (const Integer value :
          {Integer{0}, Integer{1}, Integer{-1}, Integer{1} << 100U, -(Integer{1} << 100U),
           Integer{-12345} << 57U, (Integer{1} << 64U) - 1, -(Integer{1} << 64U),
@@ -119,9 +121,9 @@ TEST_CASE("words in two's complement are the numbers that they stand for") {
         store(pixel.colour, 3, value);
         store(pixel.scatter, 1, value);
         const auto number = static_cast<double>(value);
-        CHECK(PixelSums(pixel, 5).colour(1) == std::ldexp(number, CLR_COLOUR_LSB + 5));
-        CHECK(PixelSums(pixel, 5).colour(3) == std::ldexp(number, CLR_COLOUR_LSB));
-        CHECK(PixelSums(pixel, 5).scatter(1) == std::ldexp(number, CLR_SCATTER_LSB + 10));
+        CHECK(sums.colour(1) == std::ldexp(number, CLR_COLOUR_LSB + 5));
+        CHECK(sums.colour(3) == std::ldexp(number, CLR_COLOUR_LSB));
+        CHECK(sums.scatter(1) == std::ldexp(number, CLR_SCATTER_LSB + 10));
     }
 }
 

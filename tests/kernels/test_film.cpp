@@ -118,7 +118,8 @@ TEST_CASE("values that the film cannot hold are clamped and counted", "[oclgrind
     const ClTestDevice device;
     constexpr float infinity = std::numeric_limits<float>::infinity();
     const Integer limit = integer_of(CLR_FILM_LIMIT);
-    for (const float value : {8.0f, 1e30f, infinity, std::numeric_limits<float>::quiet_NaN()}) {
+    for (const float value :
+         {8.000001f, 1e30f, infinity, std::numeric_limits<float>::quiet_NaN()}) {
         const Total total = add_up(device, {value, 1.0f});
         INFO(value);
         CHECK((total.value(0) == limit + integer_of(1)));
@@ -134,7 +135,8 @@ TEST_CASE("constants over 2^26 samples add up to 1e-6, and have no variance") {
     constexpr cl_uint samples = 1U << 26U;
     for (const float value : {1.0f, 0.1f}) {
         const FilmPixel pixel = add_pixel_samples(device, samples, value, value, 0);
-        const PixelSums sums(pixel, 0);
+        const FilmUnits units(0);
+        const PixelSums sums(pixel, units);
         const double mean = sums.colour(0) / sums.weight();
         CHECK(sums.weight() == samples);
         CHECK(pixel.samples == samples);
@@ -152,7 +154,8 @@ TEST_CASE("a sample of 1e6 and 2^20 of 1e-3 add up to 1e-6") {
     constexpr int exponent = 20;
     const FilmPixel pixel = add_pixel_samples(device, samples, 1e6f, 1e-3f, 0, exponent);
     const double expected = 1e6 + (samples - 1) * double{1e-3f};
-    const PixelSums sums(pixel, exponent);
+    const FilmUnits units(exponent);
+    const PixelSums sums(pixel, units);
     CAPTURE(sums.colour(1), expected);
     CHECK(std::abs(sums.colour(1) / expected - 1) <= 1e-6);
     // All of the scatter is the first sample's, in a block of 16.
@@ -174,7 +177,8 @@ TEST_CASE("the scatter of samples is right to 1% from a deviation of 1e-3 of the
                 const double n = std::min(CLR_BLOCK_START(b + 1), samples) - CLR_BLOCK_START(b);
                 expected += n * n / (n - 1) * half * half;
             }
-            const double scatter = PixelSums(pixel, 0).scatter(2);
+            const FilmUnits units(0);
+            const double scatter = PixelSums(pixel, units).scatter(2);
             CAPTURE(samples, step, scatter, expected);
             CHECK(std::abs(scatter / expected - 1) <= 0.01);
         }

@@ -1,7 +1,7 @@
 #pragma once
 /// The extent of shapes in world coordinates, in double precision.
 
-#include "scene/scene.h"
+#include "scene.h"
 
 #include <limits>
 
