@@ -25,6 +25,13 @@ public:
         : std::runtime_error(where.str() + ": " + what) {}
 };
 
+/// A file that cannot be written: exit code 4; everything else is written all the same.
+class OutputError : public std::runtime_error {
+public:
+    OutputError(const std::string &path, const std::string &what)
+        : std::runtime_error(path + ": " + what) {}
+};
+
 /// No usable device, or the device failed: exit code 3.
 class DeviceError : public std::runtime_error {
 public:

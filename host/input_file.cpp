@@ -1,5 +1,7 @@
 #include "input_file.h"
 
+#include "memory_limit.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -56,12 +58,16 @@ void InputFile::fail(const std::string &reason) const {
 
 std::string read_input_file(const std::string &path, const SourceLocation &referrer) {
     InputFile file(path, referrer);
+    const SourceLocation where = referrer.file.empty() ? SourceLocation{path, 0} : referrer;
+    if (file.size() > memory_limit())
+        throw InputError(where, path + ": the file has " + std::to_string(file.size()) +
+                                    " bytes, but only " + std::to_string(memory_limit()) +
+                                    " are allowed (--max-memory)");
     std::string bytes;
     try {
         bytes.resize(file.size());
     } catch (const std::exception &) {
-        throw InputError(referrer.file.empty() ? SourceLocation{path, 0} : referrer,
-                         path + ": does not fit into memory");
+        throw InputError(where, path + ": does not fit into memory");
     }
     bytes.resize(file.read(bytes.data(), bytes.size()));
     return bytes;

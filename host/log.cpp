@@ -17,7 +17,7 @@ void show(const std::string &line) {
     if (holder != nullptr)
         *holder += line;
     else
-        fmt::print(stderr, "{}", line);
+        raw(line);
 }
 
 } // namespace
@@ -32,6 +32,16 @@ void warn(const SourceLocation &where, const std::string &text) {
 
 void warn(const std::string &text) {
     show(fmt::format("clrender: warning: {}\n", text));
+}
+
+void error(const std::string &text) {
+    show("clrender: " + text + "\n");
+}
+
+void raw(const std::string &text) {
+    // Not fmt::print, which throws where stderr is closed or its disk is full.
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
 }
 
 void info(const std::string &text) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Messages for the person at the terminal, all on stderr. Thread-safe.
+/// Messages for the person at the terminal, all on stderr. Thread-safe. A message that cannot be
+/// written is lost, and no more than that.
 
 #include "error.h"
 
@@ -15,6 +16,10 @@ void set_level(Level level);
 /// `file:line: warning: text`, shown at every level.
 void warn(const SourceLocation &where, const std::string &text);
 void warn(const std::string &text);
+/// `clrender: text`, shown at every level.
+void error(const std::string &text);
+/// `text` as it is, shown at every level and never held: what a terminal's progress bar is made of.
+void raw(const std::string &text);
 /// One line of progress or outcome; hidden by `quiet`.
 void info(const std::string &text);
 /// Shown only when `verbose`.

@@ -1,40 +1,51 @@
 /// clrender: from a scene file to a picture. Each arrow of the way is one call here.
 
 #include "cli/compare.h"
+#include "cli/exit_codes.h"
 #include "cli/interrupt.h"
 #include "cli/options.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/stats_file.h"
 #include "device/cl_context.h"
 #include "error.h"
 #include "log.h"
+#include "memory_limit.h"
 #include "render/profile.h"
 #include "render/profile_trace.h"
 #include "render/render.h"
 #include "scene/load_scene.h"
 
 #include <chrono>
+#include <cstdio>
 #include <exception>
 #include <fmt/core.h>
+#include <new>
+#include <stdexcept>
+#include <utility>
 
 using namespace clrender;
 
 namespace {
 
-constexpr int exit_input = 2;
-constexpr int exit_device = 3;
-constexpr int exit_interrupted = 130;
+/// What the run is at, for the message where it ends unexpectedly.
+std::string activity = "reading the command line";
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// To stdout; main() finds out whether that went well.
+void print(const std::string &text) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
 int show_devices() {
     const std::vector<DeviceEntry> devices = list_devices();
     for (const DeviceEntry &d : devices)
-        fmt::print("{}: {} ({}, {}, {} compute units, {:.1f} GiB)\n", d.index, d.name, d.platform,
-                   d.is_gpu ? "GPU" : (d.is_cpu ? "CPU" : "other"), d.compute_units,
-                   static_cast<double>(d.memory_bytes) / (1 << 30));
+        print(fmt::format("{}: {} ({}, {}, {} compute units, {:.1f} GiB)\n", d.index, d.name,
+                          d.platform, d.is_gpu ? "GPU" : (d.is_cpu ? "CPU" : "other"),
+                          d.compute_units, static_cast<double>(d.memory_bytes) / (1 << 30)));
     if (devices.empty())
         choose_device("auto");
     return 0;
@@ -71,27 +82,63 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.tile = options.tile;
     r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
-    r.with_variance = !options.stats.empty();
+    r.with_variance = !options.stats.empty() || options.layers.count("variance") != 0;
+    r.with_samples = options.layers.count("samples") != 0;
     r.profile = options.profile ? &profile : nullptr;
-    r.on_progress = [&](double paths) { progress.update(paths); };
-    r.should_stop = cli::interrupted;
+    r.band_rows = options.band_rows;
+    r.preview = options.preview;
+    r.on_progress = [&](double paths) {
+        cli::keep_picture();
+        progress.update(paths);
+    };
+    r.should_stop = [] { return cli::interrupted() != 0; };
     return r;
 }
 
-std::map<std::string, std::string> metadata(const cli::Options &options, const Scene &scene,
+std::map<std::string, std::string> metadata(const cli::Options &options, const std::string &scene,
                                             const RenderStats &stats) {
-    return {{"scene", scene.name},
+    return {{"scene", scene},
             {"samples", std::to_string(stats.spp)},
             {"seed", std::to_string(options.seed.value_or(0))},
             {"version", CLRENDER_VERSION},
             {"device", stats.device}};
 }
 
+/// What a picture's file format cannot hold is told before the picture is made.
+void check_outputs(const cli::Options &options, const Scene &scene) {
+    constexpr int most_channels = 4;
+    for (const std::string &path : options.outputs) {
+        const std::string reason =
+            why_too_large(path, scene.film.crop_width, scene.film.crop_height, most_channels);
+        if (!reason.empty())
+            throw InputError({path, 0}, reason);
+    }
+}
+
+/// Writes the pictures; none is left out because another cannot be written.
+void write_pictures(const cli::Options &options, const std::string &scene,
+                    const RenderResult &result, cli::Outputs &outputs) {
+    const auto about = metadata(options, scene, result.stats);
+    std::vector<ImageLayer> layers;
+    if (options.layers.count("variance") != 0)
+        layers.push_back({"variance", &result.variance});
+    if (options.layers.count("samples") != 0)
+        layers.push_back({"samples", &result.samples});
+    for (const std::string &path : options.outputs)
+        outputs.attempt(path,
+                        [&] { write_image(path, result.image, options.exposure, about, layers); });
+    if (outputs.written().empty())
+        outputs.rescue(scene, result.image, about);
+}
+
 int render_command(const cli::Options &options) {
+    cli::catch_interrupts();
     Profile profile;
     const auto start = profile.origin;
+    activity = "reading " + options.scene;
     Scene scene = load_scene(options.scene, {options.defines});
     apply_options(options, scene);
+    check_outputs(options, scene);
     cli::RunTimes times;
     times.parse = seconds_since(start);
     profile.add_phase("parse", start, std::chrono::steady_clock::now());
@@ -99,6 +146,7 @@ int render_command(const cli::Options &options) {
                                scene.sample_count,
                            scene.sample_count, !options.quiet && !options.check);
     const RenderOptions how = render_options(options, progress, profile);
+    activity = options.check ? "checking " + options.scene : "rendering " + options.scene;
     if (options.check) {
         if (!options.stats.empty() || options.profile)
             log::warn("--check renders nothing: --stats and --profile are left out");
@@ -110,24 +158,30 @@ int render_command(const cli::Options &options) {
         return 0;
     }
 
-    cli::catch_interrupts();
-    const RenderResult result = render_scene(scene, how);
+    const std::string name = scene.name;
+    const RenderResult result = render_scene(std::move(scene), how);
     progress.finish();
 
+    activity = "writing the pictures";
     const auto write_start = std::chrono::steady_clock::now();
-    for (const std::string &path : options.outputs)
-        write_image(path, result.image, options.exposure, metadata(options, scene, result.stats));
+    cli::Outputs outputs;
+    write_pictures(options, name, result, outputs);
     times.write = seconds_since(write_start);
     profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
+    log::info(cli::summary(result, times, outputs.written()));
+
+    activity = "writing what is known of the run";
     if (!options.stats.empty())
-        cli::write_stats(options.stats, result, times);
-    log::info(cli::summary(result, times, options.outputs));
-    if (options.profile)
-        fmt::print("{}", profile_table(profile));
+        outputs.attempt(options.stats, [&] { cli::write_stats(options.stats, result, times); });
     if (!options.profile_trace.empty())
-        write_profile_trace(options.profile_trace, profile);
-    return result.interrupted ? exit_interrupted : 0;
+        outputs.attempt(options.profile_trace,
+                        [&] { write_profile_trace(options.profile_trace, profile); });
+    if (options.profile)
+        print(profile_table(profile));
+    if (!outputs.report())
+        return cli::exit_output;
+    return result.interrupted ? cli::exit_signal + cli::interrupted() : cli::exit_fine;
 }
 
 int run(const cli::Options &options) {
@@ -135,6 +189,8 @@ int run(const cli::Options &options) {
         log::set_level(log::Level::quiet);
     else if (options.verbose)
         log::set_level(log::Level::verbose);
+    if (options.max_memory)
+        set_memory_limit(*options.max_memory);
     switch (options.command) {
     case cli::Command::list_devices:
         return show_devices();
@@ -146,23 +202,56 @@ int run(const cli::Options &options) {
     return render_command(options);
 }
 
+/// Tells of the exception that is being handled; returns the exit code.
+int explain_exception() {
+    try {
+        throw;
+    } catch (const InputError &e) {
+        log::raw(std::string(e.what()) + "\n");
+        return cli::exit_input;
+    } catch (const OutputError &e) {
+        log::error(e.what());
+        return cli::exit_output;
+    } catch (const DeviceError &e) {
+        log::error(e.what());
+        return cli::exit_device;
+    } catch (const cl::Error &e) {
+        log::error(
+            fmt::format("OpenCL failed while {}: {} returned {}", activity, e.what(), e.err()));
+        return cli::exit_device;
+    } catch (const std::bad_alloc &) {
+        log::error("out of memory while " + activity);
+        return cli::exit_memory;
+    } catch (const std::length_error &) {
+        log::error("more memory than can be addressed is needed while " + activity);
+        return cli::exit_memory;
+    } catch (const std::exception &e) {
+        log::error(
+            fmt::format("internal error while {}: {}; please report it", activity, e.what()));
+        return cli::exit_internal;
+    } catch (...) {
+        log::error(fmt::format("internal error while {}; please report it", activity));
+        return cli::exit_internal;
+    }
+}
+
+/// What was printed has to arrive, unless the run has failed anyway.
+int finish_stdout(int exit_code) {
+    if (exit_code == cli::exit_fine && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) {
+        log::error("the standard output cannot be written");
+        return cli::exit_output;
+    }
+    return exit_code;
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
+    cli::ignore_write_signals();
     try {
         const cli::ParseResult parsed = cli::parse_options(argc, argv);
-        return parsed.options ? run(*parsed.options) : parsed.exit_code;
-    } catch (const InputError &e) {
-        fmt::print(stderr, "{}\n", e.what());
-        return exit_input;
-    } catch (const DeviceError &e) {
-        fmt::print(stderr, "clrender: {}\n", e.what());
-        return exit_device;
-    } catch (const std::bad_alloc &) {
-        fmt::print(stderr, "clrender: out of memory\n");
-        return exit_input;
-    } catch (const std::exception &e) {
-        fmt::print(stderr, "clrender: {}\n", e.what());
-        return exit_device;
+        return finish_stdout(parsed.options ? run(*parsed.options) : parsed.exit_code);
+    } catch (...) {
+        return explain_exception();
     }
 }

@@ -14,6 +14,8 @@ run_packages=(pocl-opencl-icd)
 test_packages=(catch2 clang-14 clang-format-14 clang-tidy-14 oclgrind python3)
 # To test it on Intel's runtime, which comes from PyPI.
 intel_packages=(python3-venv)
+# To give its readers made-up input (scripts/fuzz).
+fuzz_packages=(clang-14 libclang-rt-14-dev)
 # To measure it beside the renderers that PyPI has; Mitsuba compiles with LLVM.
 peer_packages=(python3-venv libllvm19)
 

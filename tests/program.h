@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -70,8 +71,10 @@ struct ProgramResult {
 class Program {
 public:
     /// Starts it in `folder`, which also receives what it prints; `environment` is added to ours.
+    /// `prepare` runs in the new process, for limits and descriptors.
     Program(const fs::path &folder, std::vector<std::string> arguments,
-            const std::vector<std::pair<std::string, std::string>> &environment = {})
+            const std::vector<std::pair<std::string, std::string>> &environment = {},
+            const std::function<void()> &prepare = {})
         : folder_(folder), start_(std::chrono::steady_clock::now()) {
         arguments.insert(arguments.begin(), CLRENDER_BINARY);
         std::vector<char *> argv;
@@ -88,6 +91,8 @@ public:
             redirect(err_file(), O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
             for (const auto &[name, value] : environment)
                 setenv(name.c_str(), value.c_str(), 1);
+            if (prepare)
+                prepare();
             if (chdir(folder_.c_str()) == 0)
                 execv(argv[0], argv.data());
             _exit(127);
@@ -134,8 +139,9 @@ private:
 /// Runs clrender in `folder` to its end.
 inline ProgramResult
 run_clrender(const fs::path &folder, const std::vector<std::string> &arguments,
-             const std::vector<std::pair<std::string, std::string>> &environment = {}) {
-    return Program(folder, arguments, environment).wait();
+             const std::vector<std::pair<std::string, std::string>> &environment = {},
+             const std::function<void()> &prepare = {}) {
+    return Program(folder, arguments, environment, prepare).wait();
 }
 
 /// True if `text` is one line with its newline, and no more.

@@ -2,6 +2,9 @@
 
 #include "flatten/generality.h"
 #include "image/image.h"
+#include "log.h"
+#include "output_file.h"
+#include "scene/limits.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,8 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int max_int = std::numeric_limits<int>::max();
-constexpr int max_side = 65536;
-constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
 
 constexpr const char *examples =
     "Examples:\n"
@@ -34,8 +35,9 @@ constexpr const char *examples =
     "  clrender scene.xml -D light_radius=10    sets a <default> of the scene\n"
     "  clrender compare a.exr b.exr --tolerance 1e-3\n"
     "\n"
-    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device,\n"
-    "130 interrupted (the picture so far is written).\n";
+    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device, 4 a\n"
+    "file could not be written (all others are), 5 out of memory, 70 a fault of clrender itself,\n"
+    "130 and 143 interrupted by SIGINT and SIGTERM (the picture so far is written).\n";
 
 /// Reads all of `text` as a number; nothing where there is anything else in it.
 template <class Number> std::optional<Number> parse_number(const std::string &text) {
@@ -79,6 +81,42 @@ CLI::Validator one_of(const std::vector<std::string> &words) {
             ""};
 }
 
+/// Bytes, or with K, M, G or T behind the number times 1024, 1024^2 and so on, as in 512M, 1.5GiB.
+std::optional<std::uint64_t> parse_size(const std::string &text) {
+    constexpr std::string_view units = "KMGT";
+    const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
+    const auto value = parse_number<double>(text.substr(0, end));
+    std::string unit = text.substr(end);
+    std::size_t power = 0;
+    if (!unit.empty() && units.find(unit[0]) != std::string_view::npos)
+        power = units.find(unit[0]) + 1;
+    const std::string behind = unit.substr(power > 0 ? 1 : 0);
+    if (!value || !(behind.empty() || behind == "B" || (power > 0 && behind == "iB")))
+        return std::nullopt;
+    const double bytes = std::ldexp(*value, 10 * static_cast<int>(power));
+    constexpr double most = 9e18;
+    if (!(bytes >= 1 && bytes <= most))
+        return std::nullopt;
+    return static_cast<std::uint64_t>(bytes);
+}
+
+/// The layers that --aov knows.
+const std::vector<std::string> &known_layers() {
+    static const std::vector<std::string> names = {"variance", "samples"};
+    return names;
+}
+
+std::string check_layer(const std::string &text) {
+    const auto &known = known_layers();
+    if (std::find(known.begin(), known.end(), text) != known.end())
+        return {};
+    return fmt::format("'{}' is no layer, expected {}", text, CLI::detail::join(known, ", "));
+}
+
+std::string check_memory_size(const std::string &text) {
+    return parse_size(text) ? "" : fmt::format("'{}' is not a size such as 512M or 4G", text);
+}
+
 /// A check for CLI11: some text.
 CLI::Validator not_empty() {
     return {[](std::string &text) { return text.empty() ? "is empty" : ""; }, ""};
@@ -99,11 +137,12 @@ std::string check_resolution(const std::string &text) {
     const auto size = parse_resolution(text);
     if (!size)
         return fmt::format("'{}' is not WIDTHxHEIGHT, such as 640x480", text);
-    const auto is_side = [](int side) { return side >= 1 && side <= max_side; };
+    const auto is_side = [](int side) { return side >= 1 && side <= max_picture_side; };
     if (!is_side(size->width) || !is_side(size->height))
-        return fmt::format("'{}' is not within 1x1 and {}x{}", text, max_side, max_side);
-    if (std::int64_t{size->width} * size->height > max_pixels)
-        return fmt::format("'{}' has more than {} pixels", text, max_pixels);
+        return fmt::format("'{}' is not within 1x1 and {}x{}", text, max_picture_side,
+                           max_picture_side);
+    if (std::int64_t{size->width} * size->height > max_picture_pixels)
+        return fmt::format("'{}' has more than {} pixels", text, max_picture_pixels);
     return {};
 }
 
@@ -117,22 +156,6 @@ std::string check_define(const std::string &text) {
     if (equals == std::string::npos || name.empty() ||
         !std::all_of(name.begin(), name.end(), is_name_char))
         return fmt::format("'{}' is not name=value (a name of letters, digits, _ - .)", text);
-    return {};
-}
-
-/// A file that can be made later: found out now, not after an hour of rendering.
-std::string check_new_file(const std::string &path) {
-    if (path.empty())
-        return "the file name is empty";
-    std::error_code ignored;
-    if (fs::is_directory(path, ignored))
-        return fmt::format("'{}' is a folder", path);
-    const fs::path folder = fs::path(path).parent_path();
-    if (!folder.empty() && !fs::is_directory(folder, ignored))
-        return fmt::format("there is no folder '{}'", folder.string());
-    if (fs::exists(path, ignored) ? access(path.c_str(), W_OK) != 0
-                                  : access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
-        return fmt::format("'{}' cannot be written", path);
     return {};
 }
 
@@ -151,7 +174,7 @@ bool is_json_path(const std::string &text) {
 std::string check_profile(const std::string &text) {
     if (text == bare_profile)
         return {};
-    return is_json_path(text) ? check_new_file(text)
+    return is_json_path(text) ? why_not_writable(text)
                               : fmt::format("'{}' does not end in .json", text);
 }
 
@@ -177,7 +200,7 @@ std::vector<std::string> reversed_arguments(int argc, const char *const *argv) {
 std::string check_output(const std::string &path) {
     if (!path.empty() && !is_writable_image_path(path))
         return fmt::format("'{}' does not end in .png, .jpg, .hdr, .exr or .pfm", path);
-    return check_new_file(path);
+    return why_not_writable(path);
 }
 
 std::string check_feature(const std::string &name) {
@@ -198,7 +221,9 @@ struct RawOptions {
     std::string light_samples = "auto";
     std::string strategy = "mis";
     std::string profile;
+    std::string max_memory;
     std::vector<std::string> generic;
+    std::vector<std::string> layers;
     std::vector<std::string> defines;
     bool list_devices = false;
 };
@@ -221,6 +246,13 @@ void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("EV")
         ->check(number(-100, 100))
         ->group("Pictures");
+    app.add_option("--aov", raw.layers,
+                   "Layers of .exr files beside the picture, comma-separated: variance, samples")
+        ->type_name("LAYER")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(check_layer, ""))
+        ->group("Pictures");
     app.add_option("-D", raw.defines, "Sets a <default> of the scene, repeatable")
         ->type_name("name=value")
         ->allow_extra_args(false)
@@ -232,7 +264,7 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
     const char *group = "Sampling (default: as the scene says)";
     app.add_option("-s,--spp", options.spp, "Samples a pixel")
         ->type_name("N")
-        ->check(whole_number(1, max_int))
+        ->check(whole_number(1, max_sample_count))
         ->group(group);
     app.add_option("--max-depth", options.max_depth, "Longest path in segments, -1: no limit")
         ->type_name("N")
@@ -289,6 +321,12 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("NAME")
         ->check(one_of({"single", "double"}))
         ->group(group);
+    app.add_option("--max-memory", raw.max_memory,
+                   "Refuses scenes that need more, on host and device together, such as 4G\n"
+                   "(default: what the machine has)")
+        ->type_name("SIZE")
+        ->check(CLI::Validator(check_memory_size, ""))
+        ->group(group);
     app.add_option("--kernel-dir", options.kernel_dir,
                    "Kernel sources instead of the built-in ones")
         ->type_name("FOLDER")
@@ -303,7 +341,7 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->group(group);
     app.add_option("--stats", options.stats, "Writes the figures of the run as JSON")
         ->type_name("FILE.json")
-        ->check(CLI::Validator(check_new_file, ""))
+        ->check(CLI::Validator(why_not_writable, ""))
         ->group(group);
     app.add_flag("--profile", raw.profile,
                  "Prints where the device's time goes; with FILE.json after it,\n"
@@ -322,6 +360,8 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
     // For the tests that a picture does not depend on how it is cut into launches; not in --help.
     app.add_option("--batch", options.batch)->check(whole_number(1, max_int))->group("");
     app.add_option("--tile", options.tile)->check(whole_number(1, max_int))->group("");
+    app.add_option("--band-rows", options.band_rows)->check(whole_number(1, max_int))->group("");
+    app.add_flag("--preview", options.preview)->group("");
 }
 
 CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {
@@ -350,10 +390,13 @@ void finish_options(Options &options, const RawOptions &raw) {
                                                 : Strategy::mis;
     options.independent = raw.sampler == "independent";
     options.double_precision = raw.precision == "double";
+    if (!raw.max_memory.empty())
+        options.max_memory = parse_size(raw.max_memory);
     options.profile = !raw.profile.empty();
     if (raw.profile != bare_profile)
         options.profile_trace = raw.profile;
     options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
+    options.layers.insert(raw.layers.begin(), raw.layers.end());
     for (const std::string &name : raw.generic) {
         if (name == "all")
             options.generality = full_generality();
@@ -383,16 +426,20 @@ void check_combination(const Options &options, const RawOptions &raw) {
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
         refuse("--precision double traces one path at a time, it excludes --lanes " + raw.lanes);
-    std::set<std::string> files;
-    for (const std::string &output : options.outputs)
-        if (!files.insert(fs::path(output).lexically_normal().string()).second)
-            refuse(fmt::format("--output: '{}' is given twice", output));
+    std::vector<std::string> files = options.outputs;
+    for (const std::string &file : {options.stats, raw.profile})
+        if (!file.empty() && file != bare_profile)
+            files.push_back(file);
+    std::set<std::string> seen;
+    for (const std::string &file : files)
+        if (!seen.insert(fs::path(file).lexically_normal().string()).second)
+            refuse(fmt::format("'{}' is to be written twice", file));
 }
 
 /// One line, whatever CLI11 wrote.
 void print_mistake(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
-    fmt::print(stderr, "clrender: {} (clrender --help lists the options)\n", text);
+    log::error(text + " (clrender --help lists the options)");
 }
 
 } // namespace

@@ -1,5 +1,7 @@
 #include "cli/progress.h"
 
+#include "log.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -47,11 +49,11 @@ void Progress::update(double paths_done) {
     // longer.
     if (terminal_) {
         const int filled = static_cast<int>(bar_width * std::min(paths_done / total_paths_, 1.0));
-        fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", bar_width - filled, text);
-        std::fflush(stderr);
+        log::raw(
+            fmt::format("\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", bar_width - filled, text));
         drawn_ = true;
     } else {
-        fmt::print(stderr, "{}\n", text);
+        log::raw(text + "\n");
     }
 }
 
@@ -68,8 +70,7 @@ std::string Progress::describe(double paths_done, double seconds) const {
 
 void Progress::finish() {
     if (drawn_) {
-        fmt::print(stderr, "\r\033[K");
-        std::fflush(stderr);
+        log::raw("\r\033[K");
     }
     drawn_ = false;
 }

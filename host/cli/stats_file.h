@@ -13,7 +13,7 @@ struct RunTimes {
     double parse = 0, write = 0, total = 0;
 };
 
-/// Writes the statistics as JSON. Throws InputError that names `path`.
+/// Writes the statistics as JSON. Throws OutputError.
 void write_stats(const std::string &path, const RenderResult &result, const RunTimes &times);
 
 /// One line for the terminal.

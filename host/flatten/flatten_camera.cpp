@@ -1,8 +1,10 @@
 #include "film_filter.h"
 #include "flatten_parts.h"
+#include "scene/limits.h"
 #include "scene/shape_bounds.h"
 #include "shared/film_filter.h"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <limits>
@@ -75,6 +77,8 @@ void flatten_integrator(Flattening &work) {
     FrameData &f = flat.frame;
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
     f.rr_depth = integrator.rr_depth;
+    if (f.max_depth > max_depth_without_roulette)
+        f.rr_depth = std::min(f.rr_depth, max_depth_without_roulette);
     const Strategy strategy = strategy_of(work);
     flat.config.STRATEGY = static_cast<int>(strategy);
     flat.config.HIDE_EMITTERS = integrator.hide_emitters ? 1 : 0;

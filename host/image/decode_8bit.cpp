@@ -1,4 +1,5 @@
 #include "formats.h"
+#include "stb_memory.h"
 
 #include <stb/stb_image.h>
 
@@ -39,6 +40,18 @@ struct StbFree {
     throw FormatError(std::string("cannot be decoded (") + (reason ? reason : "unknown") + ")");
 }
 
+/// The most that stb_image takes for a sound file of this header: the file's data, what comes out
+/// of the inflater, coefficients and planes of whole JPEG blocks, and the pixels, once more with
+/// alpha.
+std::size_t stb_bytes(const Image &header, bool is_16bit, std::size_t file_bytes) {
+    constexpr std::size_t overhead = std::size_t{1} << 20;
+    constexpr std::size_t block = 32;
+    const std::size_t pixels = (static_cast<std::size_t>(header.width) + block) *
+                               (static_cast<std::size_t>(header.height) + block);
+    const std::size_t channels = static_cast<std::size_t>(header.channels) + 1;
+    return overhead + 2 * file_bytes + pixels * channels * (is_16bit ? 12 : 8);
+}
+
 /// 16-bit values: colours are decoded from sRGB, alpha is linear.
 void decode_16bit(const stbi_us *pixels, std::size_t count, Image &image) {
     image.type = PixelType::f32;
@@ -69,6 +82,9 @@ Image decode_8bit(std::string_view bytes) {
     int width = 0;
     int height = 0;
     const bool is_16bit = stbi_is_16_bit_from_memory(data, length) != 0;
+    claim_pixels(image.width, image.height,
+                 (is_16bit ? 8U : 4U) * static_cast<std::size_t>(image.channels));
+    const StbMemory memory(stb_bytes(image, is_16bit, bytes.size()));
     std::unique_ptr<void, StbFree> pixels(
         is_16bit ? static_cast<void *>(
                        stbi_load_16_from_memory(data, length, &width, &height, &image.channels, 0))

@@ -9,98 +9,12 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
-#include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 
 namespace clrender::image_format {
 
 namespace {
-
-/// Compressed blocks shrink zeros by about a thousand; below `always_fine` bytes nobody is hurt.
-constexpr std::uint64_t max_expansion = 2048;
-constexpr std::uint64_t always_fine = std::uint64_t{64} << 20;
-
-/// What decides how much memory the library takes as soon as it opens a file.
-struct Extent {
-    std::int64_t width = 0, height = 0;
-    std::int64_t tile_width = 0, tile_height = 0; ///< 0: scan lines
-    std::uint64_t channels = 0;
-    int compression = 0;
-};
-
-std::string_view take(std::string_view &bytes, std::size_t count) {
-    if (bytes.size() < count)
-        throw FormatError("the file ends within its header (truncated)");
-    const std::string_view taken = bytes.substr(0, count);
-    bytes.remove_prefix(count);
-    return taken;
-}
-
-std::string_view take_name(std::string_view &bytes) {
-    const std::string_view name = bytes.substr(0, bytes.find('\0'));
-    take(bytes, name.size() + 1);
-    return name;
-}
-
-std::int64_t take_int(std::string_view &bytes) {
-    std::uint32_t value = 0;
-    const std::string_view raw = take(bytes, 4);
-    for (std::size_t i = 4; i-- > 0;)
-        value = value << 8 | static_cast<unsigned char>(raw[i]);
-    return static_cast<std::int32_t>(value);
-}
-
-/// Reads the attributes of the first header: name, type, size, value, up to an empty name.
-Extent read_extent(std::string_view bytes) {
-    Extent extent;
-    take(bytes, 8);
-    for (std::string_view name = take_name(bytes); !name.empty(); name = take_name(bytes)) {
-        (void)take_name(bytes);
-        const std::int64_t size = take_int(bytes);
-        if (size < 0)
-            throw FormatError("damaged header (an attribute of negative size)");
-        std::string_view value = take(bytes, static_cast<std::size_t>(size));
-        if (name == "dataWindow") {
-            const std::int64_t x = take_int(value);
-            const std::int64_t y = take_int(value);
-            extent.width = take_int(value) - x + 1;
-            extent.height = take_int(value) - y + 1;
-        } else if (name == "tiles") {
-            extent.tile_width = take_int(value);
-            extent.tile_height = take_int(value);
-        } else if (name == "compression") {
-            extent.compression = static_cast<unsigned char>(take(value, 1)[0]);
-        } else if (name == "channels") {
-            // Per channel: its name, type, flags and samplings; an empty name ends the list.
-            while (!take_name(value).empty()) {
-                take(value, 16);
-                ++extent.channels;
-            }
-        }
-    }
-    return extent;
-}
-
-/// Throws if the header asks for more memory than the file's length can justify.
-void check_extent(std::string_view bytes) {
-    const Extent extent = read_extent(bytes);
-    check_size(extent.width, extent.height, bytes.size(), std::numeric_limits<double>::infinity());
-
-    // The library holds whole blocks: up to 32 rows, with DWAB up to 256, or a tile.
-    const std::int64_t rows = extent.compression == Imf::DWAB_COMPRESSION ? 256 : 32;
-    const auto image = static_cast<std::uint64_t>(extent.width * std::max(extent.height, rows));
-    if (extent.tile_width < 0 || extent.tile_height < 0)
-        throw FormatError("damaged header (a tile of negative size)");
-    const auto tile = static_cast<std::uint64_t>(extent.tile_width) *
-                      static_cast<std::uint64_t>(extent.tile_height);
-    const std::uint64_t limit = std::max(always_fine, max_expansion * bytes.size());
-    if (std::max(image, tile) > limit / sizeof(float) / std::max<std::uint64_t>(extent.channels, 1))
-        throw FormatError("size " + std::to_string(extent.width) + " x " +
-                          std::to_string(extent.height) + " promised, but the file has only " +
-                          std::to_string(bytes.size()) + " bytes");
-}
 
 class MemoryInput : public Imf::IStream {
 public:
@@ -185,7 +99,7 @@ Imf::Slice slice(const float *pixels, const Imath::Box2i &window, int channels, 
 }
 
 Image decode(std::string_view bytes) {
-    check_extent(bytes);
+    check_exr_header(bytes);
     MemoryInput stream(bytes);
     Imf::InputFile file(stream, 0);
     const Imath::Box2i window = file.header().dataWindow();
@@ -198,6 +112,7 @@ Image decode(std::string_view bytes) {
     if (!file.isComplete())
         throw FormatError("the file ends before its last pixel (truncated)");
 
+    claim_pixels(image.width, image.height, names.size() * sizeof(float));
     image.f32.resize(static_cast<std::size_t>(image.width) *
                      static_cast<std::size_t>(image.height) * names.size());
     Imf::FrameBuffer buffer;

@@ -2,6 +2,7 @@
 /// The file formats behind read_image and write_image. All work on bytes in memory; the readers
 /// throw FormatError, to which read_image adds the file's name.
 
+#include "../scene/limits.h"
 #include "image.h"
 
 #include <cstdint>
@@ -19,18 +20,26 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-inline constexpr std::uint64_t max_pixels = std::uint64_t{1} << 28;
+inline constexpr std::uint64_t max_pixels = max_picture_pixels;
 
 /// Throws unless both sizes are positive and there are at most max_pixels, and `bytes` is at
 /// least the least number of bytes that so many pixels take: pixels / `max_pixels_per_byte`.
 void check_size(std::int64_t width, std::int64_t height, std::uint64_t bytes,
                 double max_pixels_per_byte);
 
+/// Claims the memory that decoding takes, `bytes_per_pixel` at its peak. Throws where it is not to
+/// be had, before it is taken.
+void claim_pixels(int width, int height, std::size_t bytes_per_pixel);
+
 /// Throw if the file ends before its last pixel: the decoder fills what is missing with zeros.
 void check_png_complete(std::string_view bytes);
 void check_jpeg_complete(std::string_view bytes);
 void check_bmp_complete(std::string_view bytes);
 void check_tga_complete(std::string_view bytes);
+
+/// Throws if the headers of an EXR file make the library take more memory than the file's length
+/// can justify, or if an attribute's size is not what its type has.
+void check_exr_header(std::string_view bytes);
 
 /// PNG, JPEG, BMP and TGA, by content. 8 bits stay; 16 bits are decoded from sRGB to f32.
 Image decode_8bit(std::string_view bytes);

@@ -64,6 +64,7 @@ void HdrReader::read_header(Image &image) {
 
     // The longest run covers 127 values of one of four channels with two bytes.
     check_size(image.width, image.height, bytes_.size() - offset_, 127.0 / 8);
+    claim_pixels(image.width, image.height, 3 * sizeof(float));
 }
 
 void HdrReader::read_row(std::vector<Rgbe> &row) {

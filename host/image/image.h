@@ -42,14 +42,18 @@ struct ImageLayer {
 
 /// Writes `image` (linear f32) by the extension of `path`: .png .jpg (sRGB, clamped, multiplied by
 /// 2^exposure), .hdr .pfm (RGB) .exr (32-bit float, all channels, `metadata` as string attributes,
-/// `extra_layers` as further channels). Written to a temporary file beside `path`, then renamed: a
-/// failure leaves an older file as it was. Throws InputError naming `path`.
+/// `extra_layers` as further channels). Written as write_output_file() does. Throws InputError for
+/// an unknown extension or a picture without pixels, else OutputError.
 void write_image(const std::string &path, const Image &image, double exposure = 0,
                  const std::map<std::string, std::string> &metadata = {},
                  const std::vector<ImageLayer> &extra_layers = {});
 
 /// True if `write_image` knows the extension of `path`.
 bool is_writable_image_path(const std::string &path);
+
+/// Why a picture of this size cannot be written in the format of `path`, or "". `channels` are the
+/// picture's.
+std::string why_too_large(const std::string &path, int width, int height, int channels);
 
 /// The IEC 61966-2-1 transfer function and its inverse, on [0, 1].
 double srgb_encode(double linear);

@@ -1,6 +1,7 @@
 /// Whether an image file is whole. stb_image fills what is missing in a truncated file with zeros
 /// and calls it an image; here it is an error.
 
+#include "../memory_limit.h"
 #include "formats.h"
 
 #include <fmt/format.h>
@@ -44,6 +45,13 @@ void check_size(std::int64_t width, std::int64_t height, std::uint64_t bytes,
     if (static_cast<double>(w * h) > max_pixels_per_byte * static_cast<double>(bytes))
         throw FormatError(
             fmt::format("size {} x {} promised, but the file has only {} bytes", w, h, bytes));
+}
+
+void claim_pixels(int width, int height, std::size_t bytes_per_pixel) {
+    const std::string reason = claim_memory(static_cast<std::uint64_t>(width) *
+                                            static_cast<std::uint64_t>(height) * bytes_per_pixel);
+    if (!reason.empty())
+        throw FormatError(fmt::format("size {} x {} {}", width, height, reason));
 }
 
 void check_png_complete(std::string_view bytes) {
@@ -96,6 +104,9 @@ void check_jpeg_complete(std::string_view bytes) {
     constexpr std::uint64_t huffman_tables = 0xC4;
     constexpr std::uint64_t end = 0xD9;
     constexpr std::uint64_t scan = 0xDA;
+    // Few bytes can go over all pixels once more; a progressive file of libjpeg does so ten times.
+    constexpr int most_scans = 100;
+    int scans = 0;
     std::uint64_t offset = 2;
     for (auto marker = next_marker(bytes, offset); marker != end;
          marker = next_marker(bytes, offset)) {
@@ -113,6 +124,8 @@ void check_jpeg_complete(std::string_view bytes) {
         // Coded data follow a scan's header; in them, FF 00 stands for FF, and restarts may occur.
         if (marker != scan)
             continue;
+        if (++scans > most_scans)
+            throw FormatError(fmt::format("more than {} scans, expected fewer", most_scans));
         std::uint64_t behind = offset;
         for (auto code = next_marker(bytes, behind); code == 0 || is_restart(code);
              code = next_marker(bytes, behind))

@@ -56,6 +56,8 @@ Image decode_pfm(std::string_view bytes) {
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
     if (offset > bytes.size() || (bytes.size() - offset) / 4 < row * height)
         throw FormatError("the file ends before its last pixel (truncated)");
+    claim_pixels(image.width, image.height,
+                 sizeof(float) * static_cast<std::size_t>(image.channels));
 
     const bool swap = (scale < 0) != (std::endian::native == std::endian::little);
     const auto factor = static_cast<float>(std::abs(scale));

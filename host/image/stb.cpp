@@ -5,7 +5,12 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #endif
 
+#include "stb_memory.h"
+
 #define STB_IMAGE_IMPLEMENTATION
+#define STBI_MALLOC(size) clrender_stb_malloc(size)
+#define STBI_REALLOC(block, size) clrender_stb_realloc(block, size)
+#define STBI_FREE(block) clrender_stb_free(block)
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_TGA

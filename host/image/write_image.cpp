@@ -1,19 +1,12 @@
+#include "../output_file.h"
 #include "formats.h"
 #include "image.h"
 
 #include <stb/stb_image_write.h>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 namespace clrender {
@@ -101,60 +94,6 @@ std::string lower_extension(const std::string &path) {
     return extension;
 }
 
-/// A new file beside `path` that takes its place by commit(), or else vanishes.
-class TemporaryFile {
-public:
-    explicit TemporaryFile(const std::string &path) : path_(path) {
-        // The name of a device, a FIFO or a folder must not be replaced by a picture.
-        struct stat status = {};
-        if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
-            throw InputError({path_, 0}, "is not a regular file, expected a file to write to");
-        static std::atomic<int> counter{0};
-        temporary_ = path + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++);
-        constexpr mode_t mode = 0666;
-        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-        if (descriptor_ < 0)
-            fail("cannot be written");
-    }
-    ~TemporaryFile() {
-        if (descriptor_ >= 0)
-            ::close(descriptor_);
-        if (!committed_)
-            ::unlink(temporary_.c_str());
-    }
-    TemporaryFile(const TemporaryFile &) = delete;
-    TemporaryFile &operator=(const TemporaryFile &) = delete;
-
-    void write(std::string_view bytes) {
-        while (!bytes.empty()) {
-            const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-            if (written < 0 && errno != EINTR)
-                fail("cannot be written");
-            bytes.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
-        }
-    }
-
-    /// The data are on the disk before the name is theirs.
-    void commit() {
-        if (::fsync(descriptor_) != 0)
-            fail("cannot be written");
-        const int closed = ::close(descriptor_);
-        descriptor_ = -1;
-        if (closed != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0)
-            fail("cannot be written");
-        committed_ = true;
-    }
-
-private:
-    [[noreturn]] void fail(const std::string &what) const {
-        throw InputError({path_, 0}, what + " (" + std::strerror(errno) + ")");
-    }
-
-    std::string path_, temporary_;
-    int descriptor_ = -1;
-    bool committed_ = false;
-};
-
 std::string encode(const std::string &extension, const Image &image, double exposure,
                    const std::map<std::string, std::string> &metadata,
                    const std::vector<ImageLayer> &extra_layers) {
@@ -183,11 +122,9 @@ void write_image(const std::string &path, const Image &image, double exposure,
     try {
         bytes = encode(lower_extension(path), image, exposure, metadata, extra_layers);
     } catch (const std::exception &error) {
-        throw InputError({path, 0}, std::string("cannot be encoded (") + error.what() + ")");
+        throw OutputError(path, std::string("cannot be encoded (") + error.what() + ")");
     }
-    TemporaryFile file(path);
-    file.write(bytes);
-    file.commit();
+    write_output_file(path, bytes);
 }
 
 bool is_writable_image_path(const std::string &path) {

@@ -1,9 +1,8 @@
 #include "profile_trace.h"
 
-#include "error.h"
+#include "output_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace clrender {
@@ -140,11 +139,7 @@ void write_profile_trace(const std::string &path, const Profile &profile) {
     const Json trace = {{"displayTimeUnit", "ms"},
                         {"otherData", summary(profile)},
                         {"traceEvents", std::move(events)}};
-    std::ofstream file(path);
-    file << trace.dump() << '\n';
-    file.close();
-    if (!file)
-        throw InputError({path, 0}, "the trace cannot be written");
+    write_output_file(path, trace.dump() + '\n');
 }
 
 } // namespace clrender

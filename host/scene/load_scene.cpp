@@ -1,6 +1,7 @@
 #include "load_scene.h"
 
 #include "../log.h"
+#include "../memory_limit.h"
 #include "mitsuba_xml.h"
 #include "model_scene.h"
 
@@ -11,6 +12,7 @@
 namespace clrender {
 
 Scene load_scene(const std::string &path, const LoadOptions &options) {
+    forget_memory_claims();
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

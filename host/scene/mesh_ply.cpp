@@ -2,6 +2,7 @@
 /// normal or coordinates or a face's indices is passed over.
 
 #include "../input_file.h"
+#include "../memory_limit.h"
 #include "mesh_io.h"
 #include "mesh_normals.h"
 #include "obj_lines.h"
@@ -242,6 +243,13 @@ Mesh read_ply_mesh(const std::string &path, const MeshReadOptions &options,
     const PlyHeader header = parse_ply_header(bytes, path);
     const PlyElement *vertices = find_element(header, "vertex", path);
     const PlyElement *faces = find_element(header, "face", path);
+
+    // At least a triangle for each face.
+    if (const std::string reason = claim_memory(
+            vertices->count * (sizeof(glm::dvec3) + sizeof(glm::vec3) + sizeof(glm::vec2)) +
+            faces->count * sizeof(Mesh::triangles[0]));
+        !reason.empty())
+        throw InputError({path, vertices->line}, reason);
 
     // The elements follow in the order of the header.
     Mesh mesh;

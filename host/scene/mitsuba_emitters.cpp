@@ -1,6 +1,7 @@
 /// Emitters: point, area, constant, envmap.
 
 #include "../log.h"
+#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
@@ -73,6 +74,8 @@ void SceneReader::read_envmap(Properties &properties, Emitter &emitter) {
     emitter.scale = properties.number("scale", 1);
     if (emitter.scale < 0)
         properties.fail("scale", "is negative, expected no number below 0");
+    if (emitter.scale > max_radiance)
+        properties.fail("scale", "is too large, expected no number above 1e+30");
     emitter.to_world = properties.transform("to_world");
     properties.ignore({"mis_compensation"});
     emitter.bitmap = files_.image(properties.file("filename"), properties.where("filename"));

@@ -1,21 +1,20 @@
 /// Films and reconstruction filters.
 
+#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace clrender::mitsuba {
 
 namespace {
 
-constexpr std::int64_t max_side = 65536;
-constexpr std::int64_t max_pixels = std::int64_t{1} << 28U;
-
 void read_size(Properties &properties, FilmSettings &film) {
-    film.width = static_cast<int>(properties.integer("width", film.width, 1, max_side));
-    film.height = static_cast<int>(properties.integer("height", film.height, 1, max_side));
-    if (std::int64_t{film.width} * film.height > max_pixels)
+    film.width = static_cast<int>(properties.integer("width", film.width, 1, max_picture_side));
+    film.height = static_cast<int>(properties.integer("height", film.height, 1, max_picture_side));
+    if (std::int64_t{film.width} * film.height > max_picture_pixels)
         properties.fail("width", "times height is " +
                                      std::to_string(std::int64_t{film.width} * film.height) +
                                      " pixels, expected at most 268435456");
@@ -23,9 +22,10 @@ void read_size(Properties &properties, FilmSettings &film) {
     // The crop window lies within the film.
     film.crop_x = static_cast<int>(properties.integer("crop_offset_x", 0, 0, film.width - 1));
     film.crop_y = static_cast<int>(properties.integer("crop_offset_y", 0, 0, film.height - 1));
-    film.crop_width = static_cast<int>(properties.integer("crop_width", film.width, 1, max_side));
+    film.crop_width =
+        static_cast<int>(properties.integer("crop_width", film.width, 1, max_picture_side));
     film.crop_height =
-        static_cast<int>(properties.integer("crop_height", film.height, 1, max_side));
+        static_cast<int>(properties.integer("crop_height", film.height, 1, max_picture_side));
     if (film.crop_x + film.crop_width > film.width)
         properties.fail("crop_width", "reaches beyond the film, expected at most width - "
                                       "crop_offset_x = " +
@@ -34,6 +34,13 @@ void read_size(Properties &properties, FilmSettings &film) {
         properties.fail("crop_height", "reaches beyond the film, expected at most height - "
                                        "crop_offset_y = " +
                                            std::to_string(film.height - film.crop_y));
+}
+
+void check_range(const Properties &properties, const std::string &name, double value, double lowest,
+                 double highest) {
+    if (!(value >= lowest && value <= highest))
+        properties.fail(name, fmt::format("is {:g}, expected a number from {:g} to {:g}", value,
+                                          lowest, highest));
 }
 
 } // namespace
@@ -50,15 +57,15 @@ ReconstructionFilter read_filter(const Document &document, int object) {
     filter.kind = static_cast<FilterKind>(type - types.begin());
     if (filter.kind == FilterKind::tent) {
         filter.radius = properties.number("radius", filter.radius);
-        if (!(filter.radius > 0))
-            properties.fail("radius", "is not positive, expected a number above 0");
+        check_range(properties, "radius", filter.radius, min_filter_size, max_filter_size);
     } else if (filter.kind == FilterKind::gaussian) {
         filter.stddev = properties.number("stddev", filter.stddev);
-        if (!(filter.stddev > 0))
-            properties.fail("stddev", "is not positive, expected a number above 0");
+        check_range(properties, "stddev", filter.stddev, min_filter_size, max_filter_size);
     } else if (filter.kind == FilterKind::mitchell) {
         filter.b = properties.number("B", filter.b);
         filter.c = properties.number("C", filter.c);
+        check_range(properties, "B", filter.b, -max_filter_parameter, max_filter_parameter);
+        check_range(properties, "C", filter.c, -max_filter_parameter, max_filter_parameter);
     } else if (filter.kind == FilterKind::lanczos) {
         filter.lobes = static_cast<int>(properties.integer("lobes", filter.lobes, 1, 64));
     }

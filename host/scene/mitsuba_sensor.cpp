@@ -1,6 +1,7 @@
 /// Sensors (perspective, thinlens) and samplers.
 
 #include "../log.h"
+#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
@@ -121,8 +122,8 @@ void SceneReader::read_sampler(int object) {
 
     // All samplers lead to the same expected picture: only their number of samples counts.
     Properties properties(document_, object);
-    scene_.sample_count = static_cast<int>(properties.integer(
-        "sample_count", scene_.sample_count, 1, std::numeric_limits<std::int32_t>::max()));
+    scene_.sample_count = static_cast<int>(
+        properties.integer("sample_count", scene_.sample_count, 1, max_sample_count));
     properties.ignore_everything();
     properties.finish();
 }

@@ -1,6 +1,7 @@
 /// Textures, and the colours that may stand where a texture can.
 
 #include "../log.h"
+#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
@@ -26,6 +27,9 @@ void check_range(const Properties &properties, const std::string &name, const Rg
                  SpectrumUse use, bool is_rgb) {
     if (any_below(rgb, 0))
         properties.fail(name, "is negative, expected no value below 0");
+    if (any_above(rgb, max_radiance))
+        properties.fail(name,
+                        fmt::format("is too large, expected no value above {:g}", max_radiance));
     if (use != SpectrumUse::reflectance || !any_above(rgb, 1))
         return;
     if (is_rgb)

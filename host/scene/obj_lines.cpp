@@ -1,5 +1,7 @@
 #include "obj_lines.h"
 
+#include "../memory_limit.h"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -63,7 +65,12 @@ std::string check_face(const std::vector<std::string_view> &words) {
 } // namespace
 
 ObjLines::ObjLines(const std::string &path, const SourceLocation &referrer, Filter filter)
-    : path_(path), file_(path, referrer), filter_(std::move(filter)), chunk_(chunk_size) {}
+    : path_(path), file_(path, referrer), filter_(std::move(filter)), chunk_(chunk_size) {
+    // What a mesh takes in memory, measured against the lines that it is written in.
+    constexpr std::uint64_t expansion = 5;
+    if (const std::string reason = claim_memory(expansion * file_.size()); !reason.empty())
+        throw InputError({path, 0}, reason);
+}
 
 ObjLines::int_type ObjLines::underflow() {
     // Lines that the filter empties are passed over.

@@ -1,9 +1,12 @@
 #include "xml_file.h"
 
+#include "../memory_limit.h"
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <new>
 
 namespace clrender {
 
@@ -60,17 +63,28 @@ void XmlFile::read(const SourceLocation &referrer) {
 }
 
 void XmlFile::parse() {
+    line_ends_.reserve(static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')));
     for (std::size_t i = 0; i < text_.size(); ++i)
         if (text_[i] == '\n')
-            line_ends_.push_back(static_cast<std::ptrdiff_t>(i));
+            line_ends_.push_back(static_cast<std::uint32_t>(i));
     if (text_.find_first_not_of(" \t\r\n") == std::string::npos)
         throw InputError({path_, 1}, "the file is empty, expected a <scene> element");
     if (const std::size_t nul = text_.find('\0'); nul != std::string::npos)
         throw InputError({path_, line_at(static_cast<std::ptrdiff_t>(nul))},
                          "NUL byte, expected XML in UTF-8, not a binary file");
 
+    // pugixml takes 64 bytes for a node and 40 for an attribute.
+    const auto count = [&](char c) {
+        return static_cast<std::uint64_t>(std::count(text_.begin(), text_.end(), c));
+    };
+    if (const std::string reason = claim_memory(text_.size() + 64 * count('<') + 40 * count('='));
+        !reason.empty())
+        throw InputError({path_, 0}, reason);
+
     const pugi::xml_parse_result result = document_.load_buffer_inplace(
         text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
+    if (result.status == pugi::status_out_of_memory)
+        throw std::bad_alloc();
     if (!result) {
         std::string reason = result.description();
         reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));

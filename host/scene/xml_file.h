@@ -36,7 +36,7 @@ private:
 
     std::string path_;
     std::string text_; ///< parsed in place; must outlive the document
-    std::vector<std::ptrdiff_t> line_ends_;
+    std::vector<std::uint32_t> line_ends_; ///< max_xml_bytes fits
     pugi::xml_document document_;
 };
 

@@ -150,7 +150,7 @@ TEST_CASE("The other commands") {
 }
 
 TEST_CASE("Values at the edge of what is allowed") {
-    CHECK(accept({"x.xml", "-s", "2147483647"}).spp == 2147483647);
+    CHECK(accept({"x.xml", "-s", "1073741824"}).spp == 1073741824);
     CHECK(accept({"x.xml", "-r", "65536x4096"}).resolution->height == 4096);
     CHECK(accept({"x.xml", "-r", "1x1"}).resolution->width == 1);
     CHECK(accept({"x.xml", "--max-depth", "0"}).max_depth == 0);
@@ -168,6 +168,8 @@ TEST_CASE("A mistake ends with exit code 2") {
         {"x.xml", "-s", "-1"},
         {"x.xml", "-s", "1e3"},
         {"x.xml", "-s", "12abc"},
+        {"x.xml", "-s", "1073741825"},
+        {"x.xml", "-s", "2147483585"},
         {"x.xml", "-s", "2147483648"},
         {"x.xml", "-s", "1099511627776"},
         {"x.xml", "-s", "99999999999999999999999"},
@@ -202,6 +204,8 @@ TEST_CASE("A mistake ends with exit code 2") {
         {"x.xml", "-o", "no/such/folder/a.png"},
         {"x.xml", "-o", "a.png", "-o", "./a.png"},
         {"x.xml", "--stats", "no/such/folder/a.json"},
+        {"x.xml", "--stats", "./a.png", "-o", "a.png"},
+        {"x.xml", "--stats", "t.json", "--profile", "./t.json"},
         {"x.xml", "--profile=t.txt"},
         {"x.xml", "--profile", "t.txt"},
         {"x.xml", "--profile", "no/such/folder/t.json"},

@@ -155,13 +155,35 @@ TEST_CASE("what cannot be written leaves the old file and nothing else", "[image
     Image empty;
     CHECK_THROWS_AS(write_image(old, empty), InputError);
     CHECK(test::read_bytes(old) == "old");
-    CHECK_THROWS_AS(write_image(folder.path("none/a.png"), gradient(3)), InputError);
+    CHECK_THROWS_AS(write_image(folder.path("none/a.png"), gradient(3)), OutputError);
     CHECK_THROWS_AS(write_image(folder.path("a.gif"), gradient(3)), InputError);
     REQUIRE(::mkdir(folder.path("folder.png").c_str(), 0700) == 0);
-    CHECK_THROWS_AS(write_image(folder.path("folder.png"), gradient(3)), InputError);
+    CHECK_THROWS_AS(write_image(folder.path("folder.png"), gradient(3)), OutputError);
     CHECK(folder.count() == 2);
     CHECK(is_writable_image_path("a.exr"));
     CHECK_FALSE(is_writable_image_path("a.bmp"));
+}
+
+TEST_CASE("a picture too large for its format is told before it is made", "[image]") {
+    const auto reason = [](const char *path, int width, int height, int channels = 3) {
+        return why_too_large(path, width, height, channels);
+    };
+    CHECK(reason("a.jpg", 65535, 1).empty());
+    CHECK(reason("a.JPEG", 1, 65535).empty());
+    CHECK_THAT(reason("a.jpg", 65536, 1), Catch::Contains("65535"));
+    CHECK_THAT(reason("a.JPEG", 1, 65536), Catch::Contains("65535"));
+    for (const char *path : {"a.png", "a.hdr", "a.exr", "a.pfm"}) {
+        INFO(path);
+        CHECK(reason(path, 65536, 4096, 4).empty());
+        CHECK(reason(path, 1, 65536).empty());
+    }
+
+    // Beyond what the program renders, but not what a caller may ask for: stb counts with int.
+    for (const char *path : {"a.png", "a.hdr"}) {
+        INFO(path);
+        CHECK_THAT(reason(path, 65536, 65536, 4), Catch::Contains("bytes"));
+    }
+    CHECK_THAT(reason("a.jpg", 65535, 65535), Catch::Contains("bytes"));
 }
 
 TEST_CASE("an image error names the scene's line that asked for it", "[image]") {

@@ -1,0 +1,121 @@
+#include "output_file.h"
+
+#include "error.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace clrender {
+
+namespace {
+
+std::string folder_of(const std::string &path) {
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return folder.empty() ? "." : folder;
+}
+
+/// A new file in the folder of `path` that takes its place by commit(), or else vanishes. Its own
+/// name is short, so that it can be made wherever `path` can.
+class TemporaryFile {
+public:
+    explicit TemporaryFile(const std::string &path) : path_(path) {
+        // The name of a device, a FIFO or a folder must not be replaced by a picture.
+        struct stat status = {};
+        if (::stat(path.c_str(), &status) == 0) {
+            if (!S_ISREG(status.st_mode))
+                throw OutputError(path_, "is not a regular file, expected a file to write to");
+            if (::access(path.c_str(), W_OK) != 0)
+                fail();
+        } else if (errno != ENOENT) {
+            fail();
+        }
+        static std::atomic<int> counter{0};
+        temporary_ = folder_of(path) + "/.clr" + std::to_string(::getpid()) + "-" +
+                     std::to_string(counter++);
+        constexpr mode_t mode = 0666;
+        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        if (descriptor_ < 0)
+            fail();
+    }
+    ~TemporaryFile() {
+        if (descriptor_ >= 0)
+            ::close(descriptor_);
+        if (!committed_)
+            ::unlink(temporary_.c_str());
+    }
+    TemporaryFile(const TemporaryFile &) = delete;
+    TemporaryFile &operator=(const TemporaryFile &) = delete;
+
+    void write(std::string_view bytes) {
+        while (!bytes.empty()) {
+            const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+            if (written < 0 && errno != EINTR)
+                fail();
+            bytes.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+        }
+    }
+
+    /// The data are on the disk before the name is theirs.
+    void commit() {
+        if (::fsync(descriptor_) != 0)
+            fail();
+        const int closed = ::close(descriptor_);
+        descriptor_ = -1;
+        if (closed != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0)
+            fail();
+        committed_ = true;
+        sync_folder();
+    }
+
+private:
+    /// Puts the new name on the disk too. Where a file system cannot do that, the file is written
+    /// all the same.
+    void sync_folder() const {
+        const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (folder < 0)
+            return;
+        ::fsync(folder);
+        ::close(folder);
+    }
+
+    [[noreturn]] void fail() const {
+        throw OutputError(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+    }
+
+    std::string path_, temporary_;
+    int descriptor_ = -1;
+    bool committed_ = false;
+};
+
+} // namespace
+
+void write_output_file(const std::string &path, std::string_view bytes) {
+    TemporaryFile file(path);
+    file.write(bytes);
+    file.commit();
+}
+
+std::string why_not_writable(const std::string &path) {
+    std::error_code ignored;
+    if (path.empty())
+        return "the file name is empty";
+    if (std::filesystem::is_directory(path, ignored))
+        return "'" + path + "' is a folder";
+    if (!std::filesystem::is_directory(folder_of(path), ignored))
+        return "there is no folder '" + folder_of(path) + "'";
+    try {
+        const TemporaryFile probe(path);
+    } catch (const OutputError &error) {
+        return error.what();
+    }
+    return {};
+}
+
+} // namespace clrender
