@@ -24,6 +24,7 @@
 #include <fmt/core.h>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 using namespace clrender;
 
@@ -78,16 +79,22 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.tile = options.tile;
     r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
-    r.with_variance = !options.stats.empty();
+    r.with_variance = !options.stats.empty() || options.layers.count("variance") != 0;
+    r.with_samples = options.layers.count("samples") != 0;
     r.profile = options.profile ? &profile : nullptr;
-    r.on_progress = [&](double paths) { progress.update(paths); };
-    r.should_stop = cli::interrupted;
+    r.band_rows = options.band_rows;
+    r.preview = options.preview;
+    r.on_progress = [&](double paths) {
+        cli::keep_picture();
+        progress.update(paths);
+    };
+    r.should_stop = [] { return cli::interrupted() != 0; };
     return r;
 }
 
-std::map<std::string, std::string> metadata(const cli::Options &options, const Scene &scene,
+std::map<std::string, std::string> metadata(const cli::Options &options, const std::string &scene,
                                             const RenderStats &stats) {
-    return {{"scene", scene.name},
+    return {{"scene", scene},
             {"samples", std::to_string(stats.spp)},
             {"seed", std::to_string(options.seed.value_or(0))},
             {"version", CLRENDER_VERSION},
@@ -106,16 +113,23 @@ void check_outputs(const cli::Options &options, const Scene &scene) {
 }
 
 /// Writes the pictures; none is left out because another cannot be written.
-void write_pictures(const cli::Options &options, const Scene &scene, const RenderResult &result,
-                    cli::Outputs &outputs) {
+void write_pictures(const cli::Options &options, const std::string &scene,
+                    const RenderResult &result, cli::Outputs &outputs) {
     const auto about = metadata(options, scene, result.stats);
+    std::vector<ImageLayer> layers;
+    if (options.layers.count("variance") != 0)
+        layers.push_back({"variance", &result.variance});
+    if (options.layers.count("samples") != 0)
+        layers.push_back({"samples", &result.samples});
     for (const std::string &path : options.outputs)
-        outputs.attempt(path, [&] { write_image(path, result.image, options.exposure, about); });
+        outputs.attempt(path,
+                        [&] { write_image(path, result.image, options.exposure, about, layers); });
     if (outputs.written().empty())
-        outputs.rescue(scene.name, result.image, about);
+        outputs.rescue(scene, result.image, about);
 }
 
 int render_command(const cli::Options &options) {
+    cli::catch_interrupts();
     Profile profile;
     const auto start = profile.origin;
     activity = "reading " + options.scene;
@@ -141,14 +155,14 @@ int render_command(const cli::Options &options) {
         return 0;
     }
 
-    cli::catch_interrupts();
-    const RenderResult result = render_scene(scene, how);
+    const std::string name = scene.name;
+    const RenderResult result = render_scene(std::move(scene), how);
     progress.finish();
 
     activity = "writing the pictures";
     const auto write_start = std::chrono::steady_clock::now();
     cli::Outputs outputs;
-    write_pictures(options, scene, result, outputs);
+    write_pictures(options, name, result, outputs);
     times.write = seconds_since(write_start);
     profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
@@ -164,7 +178,7 @@ int render_command(const cli::Options &options) {
         print("{}", profile_table(profile));
     if (!outputs.report())
         return cli::exit_output;
-    return result.interrupted ? cli::exit_interrupted : cli::exit_fine;
+    return result.interrupted ? cli::exit_signal + cli::interrupted() : cli::exit_fine;
 }
 
 int self_test_command(const cli::Options &options) {

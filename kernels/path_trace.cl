@@ -555,23 +555,28 @@ CLR_INLINE Work tile_of_item(__global const FrameData *frame, uint index, uint c
 }
 
 /* Item i of the launch renders tile first_item + i of those of `colour` (CLR_ALL_TILES: of all),
-   the sample blocks [first_block, end_block). */
-__kernel void path_trace(
-    __global const FrameData *frame, __global const Sphere *spheres,
-    __global const SphereTest *sphere_tests, __global const Planar *planars,
-    __global const PrimitiveRecord *records, __global const BvhNode *nodes,
-    __global const TriangleBlock *triangle_blocks, __global const SphereBlock *sphere_blocks,
-    __global const uint *triangles, __global const clr_real *normals, __global const clr_real *uvs,
-    __global const uint *shape_of, __global const ShapeInfo *shapes,
-    __global const clr_real *shape_frames, __global const Material *materials,
-    __global const EmitterInfo *emitters, __global const Light *lights,
-    __global const LightTriangle *light_triangles, __global const LightNode *light_nodes,
-    __global const TextureInfo *textures, __global const uint *texels_u8,
-    __global const clr_real *texels_f32, __global const clr_real *decode,
-    __global const clr_real *env_texels, __global const clr_real *env_cdf,
-    __global const uint *env_guide, __global const clr_real *filter, __global FilmPixel *film,
-    __global ItemCounters *item_counters, __global ControlPixel *control PROFILE_BUFFER,
-    uint first_item, uint item_count, uint first_block, uint end_block, uint colour, uint stride) {
+   the sample blocks [first_block, end_block). The film holds the rows [film_row, film_end) of the
+   picture, all that the launch reaches, and item_counters those of the tiles from first_tile on;
+   `control` has the pixels of all control tiles. */
+__kernel void path_trace(__global const FrameData *frame, __global const Sphere *spheres,
+                         __global const SphereTest *sphere_tests, __global const Planar *planars,
+                         __global const PrimitiveRecord *records, __global const BvhNode *nodes,
+                         __global const TriangleBlock *triangle_blocks,
+                         __global const SphereBlock *sphere_blocks, __global const uint *triangles,
+                         __global const clr_real *normals, __global const clr_real *uvs,
+                         __global const uint *shape_of, __global const ShapeInfo *shapes,
+                         __global const clr_real *shape_frames, __global const Material *materials,
+                         __global const EmitterInfo *emitters, __global const Light *lights,
+                         __global const LightTriangle *light_triangles,
+                         __global const LightNode *light_nodes,
+                         __global const TextureInfo *textures, __global const uint *texels_u8,
+                         __global const clr_real *texels_f32, __global const clr_real *decode,
+                         __global const clr_real *env_texels, __global const clr_real *env_cdf,
+                         __global const uint *env_guide, __global const clr_real *filter,
+                         __global FilmPixel *film, __global ItemCounters *item_counters,
+                         __global ControlPixel *control PROFILE_BUFFER, uint first_item,
+                         uint item_count, uint first_block, uint end_block, uint colour,
+                         uint stride, uint film_row, uint film_end, uint first_tile) {
     if (get_global_id(0) >= item_count)
         return;
     PROFILE_BEGIN(counts);
@@ -588,7 +593,7 @@ __kernel void path_trace(
     Work work = tile_of_item(frame, first_item + dealt, colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;
     const uint tile = (uint)work.y / TILE * tiles + (uint)work.x / TILE;
-    ItemCounters counters = item_counters[tile];
+    ItemCounters counters = item_counters[tile - first_tile];
     uint rays = 0;
     ItemCounters uncounted = {0u, 0u, 0u, 0u};
     BlockSums block;
@@ -609,7 +614,8 @@ __kernel void path_trace(
             block_clear(&block, rendering > 0u);
             render_block(&scene, work, &block, &rays, rendering == 0u ? &counters : &uncounted);
             if (rendering == 0u)
-                film_add(&scene, film, work.x, work.y, samples, &block);
+                film_add(&scene, film, work.x, work.y - (int)film_row, (int)(film_end - film_row),
+                         samples, &block);
             if (renderings > 1u)
                 control_add(control + (size_t)group * TILE_PIXELS, samples, &block,
                             rendering == 0u ? 1.0f : -1.0f);
@@ -618,6 +624,6 @@ __kernel void path_trace(
     const uint low = counters.rays_low + rays;
     counters.rays_high += low < rays ? 1u : 0u;
     counters.rays_low = low;
-    item_counters[tile] = counters;
+    item_counters[tile - first_tile] = counters;
     PROFILE_END(counts);
 }

@@ -11,7 +11,7 @@ enum ExitCode {
     exit_output = 4,    ///< a file could not be written; all others are
     exit_memory = 5,    ///< the system has no more memory
     exit_internal = 70, ///< a fault of the program itself (EX_SOFTWARE of sysexits.h)
-    exit_interrupted = 130
+    exit_signal = 128   ///< plus the signal's number: 130 after SIGINT, 143 after SIGTERM
 };
 
 } // namespace clrender::cli

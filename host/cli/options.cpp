@@ -35,11 +35,10 @@ constexpr const char *examples =
     "  clrender scene.xml -D light_radius=10    sets a <default> of the scene\n"
     "  clrender compare a.exr b.exr --tolerance 1e-3\n"
     "\n"
-    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device (or "
-    "one\n"
-    "that fails --self-test), 4 a file could not be written (all others are), 5 out of memory, 70 "
-    "a\n"
-    "fault of clrender itself, 130 interrupted (the picture so far is written).\n";
+    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device (or\n"
+    "one that fails --self-test), 4 a file could not be written (all others are), 5 out of memory,\n"
+    "70 a fault of clrender itself, 130 and 143 interrupted by SIGINT and SIGTERM (the picture so\n"
+    "far is written).\n";
 
 /// Reads all of `text` as a number; nothing where there is anything else in it.
 template <class Number> std::optional<Number> parse_number(const std::string &text) {
@@ -100,6 +99,19 @@ std::optional<std::uint64_t> parse_size(const std::string &text) {
     if (!(bytes >= 1 && bytes <= most))
         return std::nullopt;
     return static_cast<std::uint64_t>(bytes);
+}
+
+/// The layers that --aov knows.
+const std::vector<std::string> &known_layers() {
+    static const std::vector<std::string> names = {"variance", "samples"};
+    return names;
+}
+
+std::string check_layer(const std::string &text) {
+    const auto &known = known_layers();
+    if (std::find(known.begin(), known.end(), text) != known.end())
+        return {};
+    return fmt::format("'{}' is no layer, expected {}", text, CLI::detail::join(known, ", "));
 }
 
 std::string check_memory_size(const std::string &text) {
@@ -212,6 +224,7 @@ struct RawOptions {
     std::string profile;
     std::string max_memory;
     std::vector<std::string> generic;
+    std::vector<std::string> layers;
     std::vector<std::string> defines;
     bool list_devices = false;
     bool self_test = false;
@@ -234,6 +247,13 @@ void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
     app.add_option("--exposure", options.exposure, "Stops brighter, in .png and .jpg only")
         ->type_name("EV")
         ->check(number(-100, 100))
+        ->group("Pictures");
+    app.add_option("--aov", raw.layers,
+                   "Layers of .exr files beside the picture, comma-separated: variance, samples")
+        ->type_name("LAYER")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(check_layer, ""))
         ->group("Pictures");
     app.add_option("-D", raw.defines, "Sets a <default> of the scene, repeatable")
         ->type_name("name=value")
@@ -346,6 +366,8 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
     // For the tests that a picture does not depend on how it is cut into launches; not in --help.
     app.add_option("--batch", options.batch)->check(whole_number(1, max_int))->group("");
     app.add_option("--tile", options.tile)->check(whole_number(1, max_int))->group("");
+    app.add_option("--band-rows", options.band_rows)->check(whole_number(1, max_int))->group("");
+    app.add_flag("--preview", options.preview)->group("");
 }
 
 CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {
@@ -380,6 +402,7 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (raw.profile != bare_profile)
         options.profile_trace = raw.profile;
     options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
+    options.layers.insert(raw.layers.begin(), raw.layers.end());
     for (const std::string &name : raw.generic) {
         if (name == "all")
             options.generality = full_generality();

@@ -40,7 +40,8 @@ struct Options {
     std::optional<std::uint32_t> seed;
     int lanes = 0; ///< 1, 4, 8 or 16; 0: as wide as the device
     std::map<std::string, std::string> defines;
-    double exposure = 0; ///< stops, for the 8-bit formats
+    double exposure = 0;          ///< stops, for the 8-bit formats
+    std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
     bool pixel_centers = false;
     Accel accel = Accel::bvh;
     bool independent = false;      ///< --sampler independent
@@ -58,6 +59,8 @@ struct Options {
     std::set<std::string> generality; ///< --generic, names of kernel_config.def
     int batch = 0;                    ///< samples of a pixel in one launch; 0: the program chooses
     int tile = 0;                     ///< pixel groups in one launch; 0: the program chooses
+    int band_rows = 0;                ///< rows of tiles in one band; 0: the program chooses
+    bool preview = false;             ///< a few samples of all pixels first, whatever the size
     CompareOptions compare;
 };
 

@@ -50,6 +50,7 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
           {"variance_factor_error", result.error.factor.error}}},
         {"nonfinite_samples", stats.nonfinite_samples},
         {"clamped_pixels", stats.clamped_pixels},
+        {"pixels_without_samples", result.gaps},
     };
     write_output_file(path, json.dump(2) + '\n');
 }
@@ -60,15 +61,20 @@ std::string summary(const RenderResult &result, const RunTimes &times,
     std::string files;
     for (const std::string &path : outputs)
         files += (files.empty() ? "" : ", ") + path;
+    const double pixels = static_cast<double>(s.width) * s.height;
+    const std::string gaps =
+        result.gaps == 0 ? ""
+                         : fmt::format("; {:.3g}% of the pixels have no sample yet and show their "
+                                       "neighbours",
+                                       100 * static_cast<double>(result.gaps) / pixels);
     return fmt::format("{}{}: {}x{}, {:.4g} samples a pixel, {:.2f} s ({:.2f} Mpaths/s on {}, {} "
-                       "lanes; {:.2f} s in all)",
+                       "lanes; {:.2f} s in all){}",
                        files.empty()        ? "rendered"
                        : result.interrupted ? "interrupted; the picture so far is in "
                                             : "wrote ",
-                       files, s.width, s.height,
-                       s.paths / (static_cast<double>(s.width) * s.height), s.seconds_render,
-                       per_second(s.paths, s.seconds_render) * 1e-6, s.device, s.lanes,
-                       times.total);
+                       files, s.width, s.height, s.paths / pixels, s.seconds_render,
+                       per_second(s.paths, s.seconds_render) * 1e-6, s.device, s.lanes, times.total,
+                       gaps);
 }
 
 } // namespace clrender::cli

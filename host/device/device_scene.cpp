@@ -4,62 +4,38 @@
 #include "upload.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <fmt/core.h>
+#include <type_traits>
 
 namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
-/// The bytes of one array, in the order of the kernel's arguments.
-struct View {
-    const void *data;
-    std::size_t bytes;
-};
-
-template <typename T> View view(const std::vector<T> &array) {
-    return {array.data(), array.size() * sizeof(T)};
+/// Calls `take` with each array, in the order of the kernel's arguments behind the frame.
+template <typename Take> void for_each_array(FlatScene &flat, Take take) {
+    const auto take_all = [&](auto &...arrays) { (take(arrays), ...); };
+    take_all(flat.spheres, flat.sphere_tests, flat.planars, flat.records, flat.bvh.nodes,
+             flat.bvh.triangle_blocks, flat.bvh.sphere_blocks, flat.triangles, flat.normals,
+             flat.uvs, flat.shape_of, flat.shapes, flat.shape_frames, flat.materials, flat.emitters,
+             flat.lights, flat.light_triangles, flat.light_nodes, flat.textures, flat.texels_u8,
+             flat.texels_f32, flat.decode, flat.env_texels, flat.env_cdf, flat.env_guide,
+             flat.filter);
 }
 
-std::vector<View> views(const FlatScene &flat) {
-    return {{&flat.frame, sizeof(flat.frame)},
-            view(flat.spheres),
-            view(flat.sphere_tests),
-            view(flat.planars),
-            view(flat.records),
-            view(flat.bvh.nodes),
-            view(flat.bvh.triangle_blocks),
-            view(flat.bvh.sphere_blocks),
-            view(flat.triangles),
-            view(flat.normals),
-            view(flat.uvs),
-            view(flat.shape_of),
-            view(flat.shapes),
-            view(flat.shape_frames),
-            view(flat.materials),
-            view(flat.emitters),
-            view(flat.lights),
-            view(flat.light_triangles),
-            view(flat.light_nodes),
-            view(flat.textures),
-            view(flat.texels_u8),
-            view(flat.texels_f32),
-            view(flat.decode),
-            view(flat.env_texels),
-            view(flat.env_cdf),
-            view(flat.env_guide),
-            view(flat.filter)};
+template <typename T> std::size_t bytes_of(const std::vector<T> &array) {
+    return array.size() * sizeof(T);
 }
 
-void check_memory(const DeviceEntry &entry, const std::vector<View> &arrays,
-                  std::size_t film_bytes) {
-    std::size_t total = film_bytes;
+void check_memory(const DeviceEntry &entry, FlatScene &flat, std::size_t film_bytes) {
+    std::size_t total = film_bytes + sizeof(flat.frame);
     std::size_t largest = film_bytes;
-    for (const View &array : arrays) {
-        total += array.bytes;
-        largest = std::max(largest, array.bytes);
-    }
-    // The arrays lie on the host too.
-    check_total_memory(2 * total - film_bytes);
+    for_each_array(flat, [&](const auto &array) {
+        total += bytes_of(array);
+        largest = std::max(largest, bytes_of(array));
+    });
+    // Each array lies on the host too until it is uploaded.
+    check_total_memory(total + largest);
     if (total > entry.memory_bytes)
         throw DeviceError(fmt::format("the scene and the film need {} bytes, but {} has {}", total,
                                       entry.name, entry.memory_bytes));
@@ -71,14 +47,26 @@ void check_memory(const DeviceEntry &entry, const std::vector<View> &arrays,
 } // namespace
 
 DeviceScene::DeviceScene(const cl::Context &context, const cl::CommandQueue &queue,
-                         const DeviceEntry &entry, const FlatScene &flat, std::size_t film_bytes) {
-    const std::vector<View> arrays = views(flat);
-    check_memory(entry, arrays, film_bytes);
+                         const DeviceEntry &entry, FlatScene &flat, std::size_t film_bytes) {
+    check_memory(entry, flat, film_bytes);
     with_device("uploading the scene", [&] {
-        for (const View &array : arrays) {
-            buffers_.push_back(upload(context, queue, array.data, array.bytes));
-            bytes_ += array.bytes;
-        }
+        const auto add = [&](const void *data, std::size_t bytes) {
+            buffers_.push_back(upload(context, queue, data, bytes));
+            bytes_ += bytes;
+        };
+        add(&flat.frame, sizeof(flat.frame));
+        for_each_array(flat, [&](auto &array) {
+            add(array.data(), bytes_of(array));
+            array = std::remove_reference_t<decltype(array)>();
+        });
+    });
+}
+
+void DeviceScene::set_samples(const cl::CommandQueue &queue, int samples) const {
+    with_device("setting the number of samples", [&] {
+        const auto value = static_cast<cl_uint>(samples);
+        queue.enqueueWriteBuffer(buffers_.front(), CL_TRUE, offsetof(FrameData, total_samples),
+                                 sizeof(value), &value);
     });
 }
 

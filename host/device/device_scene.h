@@ -8,13 +8,17 @@ namespace clrender::inline CLR_PRECISION {
 
 class DeviceScene {
 public:
-    /// Uploads all arrays; empty ones become a few bytes, since OpenCL knows no empty buffers.
-    /// Throws DeviceError with the byte counts where the device's memory does not suffice.
+    /// Uploads all arrays and frees each of them then: a processor's device memory is the host's.
+    /// Empty ones become a few bytes, since OpenCL knows no empty buffers. Throws DeviceError with
+    /// the byte counts where the device's memory does not suffice.
     DeviceScene(const cl::Context &context, const cl::CommandQueue &queue, const DeviceEntry &entry,
-                const FlatScene &flat, std::size_t film_bytes);
+                FlatScene &flat, std::size_t film_bytes);
 
     /// Binds the buffers to the kernel's first arguments, in order; returns how many.
     cl_uint bind(cl::Kernel &kernel) const;
+
+    /// Sets FrameData::total_samples for the launches that follow.
+    void set_samples(const cl::CommandQueue &queue, int samples) const;
 
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 

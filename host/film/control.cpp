@@ -3,7 +3,10 @@
 #include "film_sums.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <tbb/parallel_for.h>
 #include <vector>
 
 namespace clrender {
@@ -22,11 +25,21 @@ std::size_t colour_channels(const Image &image) {
     return image.channels <= 2 ? 1 : 3;
 }
 
-/// The weight of a squared error in the value of a pixel.
-double weight_of(const Image &image, std::size_t pixel, std::size_t channel) {
-    const std::size_t i = pixel * static_cast<std::size_t>(image.channels) +
-                          std::min(channel, colour_channels(image) - 1);
-    const double value = image.f32[i];
+/// The weight of a squared error in the value of a pixel: by the median of the pixels around it,
+/// since a value that is too bright by its own noise would weigh it too lightly.
+double weight_of(const Image &image, std::size_t x, std::size_t y, std::size_t channel) {
+    const auto width = static_cast<std::size_t>(image.width);
+    const auto height = static_cast<std::size_t>(image.height);
+    const auto channels = static_cast<std::size_t>(image.channels);
+    channel = std::min(channel, colour_channels(image) - 1);
+    std::array<float, 9> around{};
+    std::size_t count = 0;
+    for (std::size_t j = y - std::min<std::size_t>(y, 1); j < std::min(y + 2, height); ++j)
+        for (std::size_t i = x - std::min<std::size_t>(x, 1); i < std::min(x + 2, width); ++i)
+            around[count++] = image.f32[(j * width + i) * channels + channel];
+    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(count));
+    const double value = *middle;
     return 1 / (value * value + epsilon);
 }
 
@@ -44,12 +57,10 @@ Squares squares_of_tile(const ControlLayout &layout, std::size_t tile, const Con
         for (std::size_t x = 0; x < std::min(layout.side, layout.width - left); ++x) {
             const ControlPixel &pixel = pixels[y * layout.side + x];
             for (std::size_t c = 0; c < 3; ++c) {
-                const double weight = weight_of(image, (top + y) * layout.width + left + x, c);
+                const double weight = weight_of(image, left + x, top + y, c);
                 const double difference = units.difference(pixel, static_cast<int>(c));
                 sum.measured += weight * difference * difference;
-                // The scatter is the sum of the first rendering; the difference has the noise of
-                // two.
-                sum.expected += 2 * weight * units.scatter(pixel, static_cast<int>(c));
+                sum.expected += weight * units.scatter(pixel, static_cast<int>(c));
             }
         }
     return sum;
@@ -96,12 +107,18 @@ VarianceFactor variance_factor(const ControlLayout &layout, std::span<const Cont
 double mean_relative_variance(const Image &image, const Image &variance) {
     const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t colours = colour_channels(image);
-    const std::size_t pixels = image.f32.size() / channels;
-    double sum = 0;
-    for (std::size_t i = 0; i < pixels; ++i)
-        for (std::size_t c = 0; c < colours; ++c)
-            sum += weight_of(image, i, c) * double{variance.f32[i * channels + c]};
-    return pixels > 0 ? sum / static_cast<double>(pixels * colours) : 0;
+    const auto width = static_cast<std::size_t>(image.width);
+    const auto height = static_cast<std::size_t>(image.height);
+    // Row by row, so that the sum does not depend on the threads.
+    std::vector<double> rows(height, 0.0);
+    tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
+        for (std::size_t x = 0; x < width; ++x)
+            for (std::size_t c = 0; c < colours; ++c)
+                rows[y] += weight_of(image, x, y, c) *
+                           double{variance.f32[(y * width + x) * channels + c]};
+    });
+    return std::accumulate(rows.begin(), rows.end(), 0.0) /
+           static_cast<double>(std::max<std::size_t>(width * height, 1) * colours);
 }
 
 } // namespace clrender

@@ -36,13 +36,15 @@ struct VarianceFactor {
 
 /// The factor by which the mean over the picture of variance / (value^2 + .01) is right: in all
 /// control tiles the squared differences of both renderings, so weighted, over what the scatter of
-/// the samples makes expect. 1 where there is no noise. `pixels`: those of all control tiles, tile
-/// by tile; `image`: the picture.
+/// the samples makes expect. The value of a pixel is taken as the median of those around it. 1
+/// where there is no noise. `pixels`: those of all control tiles, tile by tile; `image`: the
+/// picture.
 VarianceFactor variance_factor(const ControlLayout &layout, std::span<const ControlPixel> pixels,
                                const Image &image, int film_exponent);
 
 /// The mean over pixels and colour channels of variance / (value^2 + .01): the expected relMSE of
-/// `image` by its noise; what is systematically wrong is not part of it.
+/// `image` by its noise; what is systematically wrong is not part of it. Values are medians as
+/// above.
 double mean_relative_variance(const Image &image, const Image &variance);
 
 } // namespace clrender

@@ -130,6 +130,16 @@ Image film_mean(const Film &film, PixelFormat format) {
     return image;
 }
 
+Image film_samples(const Film &film) {
+    Image image;
+    image.width = film.width;
+    image.height = film.height;
+    image.channels = 1;
+    for (const FilmPixel &pixel : film.pixels)
+        image.f32.push_back(static_cast<float>(pixel.samples));
+    return image;
+}
+
 Image film_variance(const Film &film, PixelFormat format) {
     const auto width = static_cast<std::size_t>(film.width);
     const auto height = static_cast<std::size_t>(film.height);

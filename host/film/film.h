@@ -23,6 +23,9 @@ struct Film {
 /// The weighted mean of each pixel, in the channels of `format`; a pixel without samples is black.
 Image film_mean(const Film &film, PixelFormat format);
 
+/// The samples that lie in each pixel, in one channel.
+Image film_samples(const Film &film);
+
 /// The estimated variance of each mean, were the samples of a pixel independent: of a ratio of
 /// sums, to first order (Cochran, "Sampling Techniques", 1977, section 6.4), from the scatter of
 /// the samples within the pixels that they lie in, the number of samples in each being fixed.

@@ -237,8 +237,9 @@ void build_hierarchy(FlatScene &flat) {
     if (!flat.has_hierarchy())
         return;
     flat.bvh = build_bvh(flat.corners, flat.bvh_spheres);
-    flat.corners = {};
-    flat.bvh_spheres = {};
+    // An empty list in place of an empty vector would keep the memory.
+    flat.corners = std::vector<TriangleCorners>();
+    flat.bvh_spheres = std::vector<BvhSphere>();
     flat.frame.triangle_blocks = static_cast<uint>(flat.bvh.triangle_blocks.size());
     flat.frame.sphere_blocks = static_cast<uint>(flat.bvh.sphere_blocks.size());
     if (flat.bvh.degenerate > 0)

@@ -1,9 +1,7 @@
 #include "path_tracer.h"
 
 #include "device_peak.h"
-#include "film/film.h"
 #include "film/film_blocks.h"
-#include "flatten/film_filter.h"
 #include "log.h"
 #include "profile.h"
 
@@ -27,7 +25,19 @@ constexpr std::size_t cpu_group = 1;
 constexpr std::size_t gpu_group = 64;
 
 /// Arguments of the kernel that are numbers, the last ones; the rest are buffers.
-constexpr cl_uint launch_numbers = 6;
+constexpr cl_uint launch_numbers = 9;
+
+/// The sums of a picture stay in one piece up to this share of the device's memory; beyond, bands
+/// need not be large to be fast.
+constexpr std::size_t film_share = 4;
+constexpr std::size_t largest_band = std::size_t{512} << 20;
+
+/// Where the first pass is expected to take longer, all pixels get a sample or a few before it, as
+/// long as these are less than a thirtieth of all.
+constexpr double long_pass_seconds = 3;
+constexpr int least_spp_of_preview = 32;
+/// As soon as the speed is known.
+constexpr double probe_seconds = 0.15;
 
 std::size_t round_up(std::size_t value, std::size_t unit) {
     return (value + unit - 1) / unit * unit;
@@ -65,13 +75,30 @@ int tile_of(const DeviceEntry &entry, const KernelConfig &config) {
     return entry.is_cpu || config.FILTER == 3 ? cpu_tile : gpu_tile;
 }
 
-PathTracer::PathTracer(const DeviceEntry &entry, const FlatScene &flat,
-                       const RenderOptions &options)
-    : entry_(entry), flat_(flat), options_(options),
-      extent_(flat.frame, static_cast<std::size_t>(flat.config.TILE)),
-      control_layout_{flat.frame.width, flat.frame.height,
-                      static_cast<std::size_t>(flat.config.TILE), flat.frame.control_group},
-      group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group) {
+PictureTiles tiles_of(const FlatScene &flat) {
+    return {flat.frame.width, flat.frame.height, static_cast<std::size_t>(flat.config.TILE),
+            static_cast<std::size_t>(flat.config.BORDER)};
+}
+
+std::vector<Band> bands_of(const DeviceEntry &entry, const FlatScene &flat,
+                           const RenderOptions &options) {
+    const PictureTiles tiles = tiles_of(flat);
+    const auto rows = static_cast<std::size_t>(options.band_rows);
+    const std::size_t limit = std::min(entry.max_allocation_bytes, entry.memory_bytes / film_share);
+    std::vector<Band> bands = cut_into_bands(tiles, limit, rows);
+    if (bands.size() > 1 && rows == 0)
+        bands = cut_into_bands(tiles, std::min(limit, largest_band));
+    return bands;
+}
+
+PathTracer::PathTracer(const DeviceEntry &entry, FlatScene &flat, const RenderOptions &options)
+    : entry_(entry), flat_(flat), options_(options), tiles_(tiles_of(flat)),
+      bands_(bands_of(entry, flat, options)), control_{tiles_.width, tiles_.height, tiles_.side,
+                                                       flat.frame.control_group},
+      group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group),
+      pace_(tiles_.columns(), tiles_.rows(),
+            round_up(static_cast<std::size_t>(entry.compute_units) * (entry.is_cpu ? 1 : 4),
+                     group_)) {
     with_device("opening the device", [&] {
         context_ = cl::Context(entry.device);
         queue_ = cl::CommandQueue(context_, entry.device,
@@ -104,26 +131,17 @@ void PathTracer::compile(RenderStats &stats) {
 }
 
 void PathTracer::upload(RenderStats &stats) {
-    scene_ = std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, extent_.bytes());
-    with_device("clearing the film", [&] {
-        film_ = cl::Buffer(context_, CL_MEM_READ_WRITE, extent_.film_bytes());
-        counters_ = cl::Buffer(context_, CL_MEM_READ_WRITE, extent_.counter_bytes());
-        const std::size_t control_bytes = std::max(control_layout_.bytes(), sizeof(ControlPixel));
-        control_ = cl::Buffer(context_, CL_MEM_READ_WRITE, control_bytes);
-        queue_.enqueueFillBuffer(control_, cl_uint{0}, 0, control_bytes);
-        queue_.enqueueFillBuffer(film_, cl_uint{0}, 0, extent_.film_bytes());
-        queue_.enqueueFillBuffer(counters_, cl_uint{0}, 0, extent_.counter_bytes());
-        launch_arguments_ = scene_->bind(kernel_);
-        kernel_.setArg(launch_arguments_++, film_);
-        kernel_.setArg(launch_arguments_++, counters_);
-        kernel_.setArg(launch_arguments_++, control_);
+    const std::size_t film_bytes = band_bytes(tiles_, bands_.front());
+    scene_ = std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, film_bytes);
+    film_ = std::make_unique<DeviceFilm>(context_, queue_, tiles_, bands_, control_);
+    with_device("binding the buffers", [&] {
+        launch_arguments_ = film_->bind(kernel_, scene_->bind(kernel_));
         if (options_.profile != nullptr) {
             recorder_ = std::make_unique<ProfileRecorder>(*options_.profile, context_, queue_);
             kernel_.setArg(launch_arguments_++, recorder_->buffer());
         }
-        queue_.finish();
     });
-    stats.device_bytes = scene_->bytes() + extent_.bytes();
+    stats.device_bytes = scene_->bytes() + film_->bytes();
     if (recorder_)
         stats.device_bytes += recorder_->bytes();
 }
@@ -137,6 +155,10 @@ void PathTracer::enqueue(const LaunchPlan::Launch &launch, cl::Event *event) {
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.end_block));
         kernel_.setArg(argument++, static_cast<cl_uint>(launch.colour));
         kernel_.setArg(argument++, static_cast<cl_uint>(dealing_stride(launch.item_count)));
+        const FilmWindow window = film_->window();
+        kernel_.setArg(argument++, window.first_row);
+        kernel_.setArg(argument++, window.end_row);
+        kernel_.setArg(argument++, window.first_tile);
         queue_.enqueueNDRangeKernel(
             kernel_, cl::NullRange,
             cl::NDRange(round_up(std::max<std::size_t>(launch.item_count, 1), group_)),
@@ -145,92 +167,150 @@ void PathTracer::enqueue(const LaunchPlan::Launch &launch, cl::Event *event) {
     });
 }
 
-void PathTracer::finish(Pending &pending, LaunchPlan &plan, int spp) {
+void PathTracer::finish(Pending &pending, LaunchPlan &plan) {
     with_device("running the kernel", [&] { pending.event.wait(); });
     const auto now = std::chrono::steady_clock::now();
     // Two launches are under way at a time: this one began when the one before it ended.
     const auto start = std::max(pending.start, last_finish_);
-    plan.learn(pending.launch, std::chrono::duration<double>(now - start).count());
+    plan.finished(pending.launch, std::chrono::duration<double>(now - start).count());
     last_finish_ = now;
     if (recorder_)
         recorder_->finished(pending.launch, pending.event, pending.start);
 
     // An estimate for the progress bar: tiles at the border are smaller.
-    const int first = CLR_BLOCK_START(pending.launch.first_block);
-    const int end = std::min(CLR_BLOCK_START(pending.launch.end_block), spp);
-    const double share =
-        static_cast<double>(pending.launch.item_count) / static_cast<double>(extent_.tiles());
-    paths_done_ += share * static_cast<double>(extent_.pixels) * (end - first);
+    const double paths = static_cast<double>(pending.launch.item_count) /
+                         static_cast<double>(tiles_.columns() * tiles_.rows()) *
+                         static_cast<double>(tiles_.pixels()) * plan.samples_of(pending.launch);
+    paths_done_ += paths;
+    progress_ += paths;
     if (options_.on_progress)
-        options_.on_progress(paths_done_);
+        options_.on_progress(progress_ / progress_total_);
 }
 
-bool PathTracer::render(int spp) {
-    const std::size_t least_items =
-        round_up(static_cast<std::size_t>(entry_.compute_units) * 4, group_);
-    LaunchPlan plan(extent_.tiles_x, extent_.tiles_y, blocks_of(spp), flat_.config.FILTER == 3,
-                    static_cast<std::size_t>(options_.tile), options_.batch, least_items);
+/// Runs the launches of a plan. Ends as `slow` where that is allowed and the first pass turns out
+/// to take long.
+PathTracer::Ended PathTracer::run(LaunchPlan &plan, bool may_be_slow) {
     std::deque<Pending> pending;
-    bool stopped = false;
-    while (!pending.empty() || (!plan.done() && !stopped)) {
+    Ended ended = Ended::done;
+    const auto start = std::chrono::steady_clock::now();
+    while (!pending.empty() || (!plan.done() && ended == Ended::done)) {
         // The next launch waits in the queue while the one before it runs.
-        while (pending.size() < 2 && !plan.done() && !stopped) {
+        while (pending.size() < 2 && !plan.done() && ended == Ended::done) {
             Pending next{plan.next(), {}, std::chrono::steady_clock::now()};
             enqueue(next.launch, &next.event);
             if (recorder_)
                 recorder_->enqueued(next.launch);
             pending.push_back(next);
         }
-        finish(pending.front(), plan, spp);
+        finish(pending.front(), plan);
         pending.pop_front();
-        stopped = stopped || (options_.should_stop && options_.should_stop());
+        if (options_.should_stop && options_.should_stop())
+            ended = Ended::stopped;
+        const std::chrono::duration<double> taken = last_finish_ - start;
+        if (may_be_slow && ended == Ended::done && taken.count() > probe_seconds) {
+            may_be_slow = false;
+            if (plan.seconds_of_first_pass() > long_pass_seconds)
+                ended = Ended::slow;
+        }
+    }
+    return ended == Ended::stopped && plan.done() ? Ended::done : ended;
+}
+
+LaunchPlan PathTracer::plan_of(const Band &band, int spp, int first_block) {
+    return {band.tiles,
+            spp,
+            flat_.config.FILTER == 3,
+            pace_,
+            static_cast<std::size_t>(options_.tile),
+            options_.batch,
+            first_block};
+}
+
+void PathTracer::take(Picture &picture, const Band &band, const LaunchPlan &plan) {
+    const auto start = std::chrono::steady_clock::now();
+    picture.take(*film_, band, plan);
+    const auto end = std::chrono::steady_clock::now();
+    seconds_read_ += std::chrono::duration<double>(end - start).count();
+    if (options_.profile != nullptr)
+        options_.profile->add_phase("read", start, end);
+}
+
+/// Gives every pixel a few samples, which are taken again with all others.
+PathTracer::Ended PathTracer::preview(int spp, Picture &picture, RenderStats &stats) {
+    const int samples = preview_samples(spp);
+    progress_ = 0;
+    progress_total_ = 1 + static_cast<double>(samples) / spp;
+    scene_->set_samples(queue_, samples);
+    film_->forget();
+    Ended ended = Ended::done;
+    for (std::size_t i = 0; i < bands_.size() && ended == Ended::done; ++i) {
+        film_->begin(bands_[i]);
+        LaunchPlan plan = plan_of(bands_[i], samples);
+        ended = run(plan, false);
+        take(picture, bands_[i], plan);
+        if (ended == Ended::stopped)
+            add_counters(stats);
+    }
+    scene_->set_samples(queue_, spp);
+    return ended;
+}
+
+PathTracer::Ended PathTracer::render_bands(int spp, bool may_be_slow, Picture &picture,
+                                           RenderStats &stats) {
+    paths_done_ = 0;
+    film_->forget();
+    picture.begin_again();
+    for (const Band &band : bands_) {
+        film_->begin(band);
+        LaunchPlan plan = plan_of(band, spp);
+        const Ended ended = run(plan, may_be_slow);
+        if (ended == Ended::slow)
+            return ended;
+        take(picture, band, plan);
+        add_counters(stats);
+        if (ended == Ended::stopped)
+            return ended;
+    }
+    return Ended::done;
+}
+
+bool PathTracer::render(int spp, Picture &picture, RenderStats &stats) {
+    // A profile shows every sample once.
+    const bool may_preview = spp >= least_spp_of_preview && !recorder_;
+    bool preview_first = options_.preview || (may_preview && bands_.size() > 1);
+    Ended ended = Ended::slow;
+    while (ended == Ended::slow) {
+        ended = preview_first ? preview(spp, picture, stats) : Ended::done;
+        if (ended == Ended::done)
+            ended = render_bands(spp, may_preview && !preview_first, picture, stats);
+        preview_first = true;
     }
     if (recorder_)
         recorder_->complete(spp);
-    return stopped && !plan.done();
+    stats.paths = std::round(paths_done_);
+    return ended == Ended::stopped;
 }
 
-void PathTracer::read(RenderResult &result, PixelFormat format) {
-    Film film;
-    film.width = static_cast<int>(flat_.frame.width);
-    film.height = static_cast<int>(flat_.frame.height);
-    film.exponent = flat_.frame.film_exponent;
-    if (flat_.config.BORDER > 0)
-        film.spread =
-            filter_spread(flat_.filter, double{flat_.frame.filter_radius}, flat_.config.BORDER);
-    film.pixels.resize(extent_.pixels);
-    std::vector<ItemCounters> counters(extent_.tiles());
-    with_device("reading the film", [&] {
-        queue_.enqueueReadBuffer(film_, CL_TRUE, 0, extent_.film_bytes(), film.pixels.data());
-        queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, extent_.counter_bytes(), counters.data());
-    });
-    result.image = film_mean(film, format);
-    if (options_.with_variance) {
-        result.variance = film_variance(film, format);
-        std::vector<ControlPixel> control(control_layout_.bytes() / sizeof(ControlPixel));
-        if (!control.empty())
-            with_device("reading the control tiles", [&] {
-                queue_.enqueueReadBuffer(control_, CL_TRUE, 0, control_layout_.bytes(),
-                                         control.data());
-            });
-        result.error.factor =
-            variance_factor(control_layout_, control, result.image, film.exponent);
-        for (float &value : result.variance.f32)
-            value *= static_cast<float>(result.error.factor.value);
-        result.error.relative_variance = mean_relative_variance(result.image, result.variance);
+bool PathTracer::advance(int done, int spp, Picture &picture, RenderStats &stats) {
+    const Band &band = bands_.front();
+    if (done == 0) {
+        film_->forget();
+        film_->begin(band);
+        progress_total_ = 1;
     }
-
-    RenderStats &stats = result.stats;
-    for (std::size_t i = 0; i < film.pixels.size(); ++i) {
-        if (film.pixels[i].clamped == 0)
-            continue;
-        if (stats.clamped_pixels++ == 0) {
-            stats.clamped_x = static_cast<int>(i % flat_.frame.width);
-            stats.clamped_y = static_cast<int>(i / flat_.frame.width);
-        }
-    }
+    LaunchPlan plan = plan_of(band, spp, blocks_of(done));
+    const Ended ended = run(plan, false);
+    picture.begin_again();
+    take(picture, band, plan);
+    // The counters go on from the first sample.
+    stats.rays = stats.nonfinite_samples = 0;
+    add_counters(stats);
     stats.paths = std::round(paths_done_);
-    for (const ItemCounters &c : counters) {
+    return ended == Ended::stopped;
+}
+
+void PathTracer::add_counters(RenderStats &stats) const {
+    for (const ItemCounters &c : film_->read_counters()) {
         stats.rays += c.rays_low + 4294967296.0 * c.rays_high;
         if (c.nonfinite > 0 && stats.nonfinite_samples == 0) {
             stats.nonfinite_x = static_cast<int>(c.first_nonfinite % flat_.frame.width);
@@ -246,7 +326,7 @@ void PathTracer::complete_profile(const RenderStats &stats) {
     profile.config = flat_.config;
     profile.uploaded_bytes = static_cast<double>(scene_->bytes());
     profile.device_bytes = static_cast<double>(stats.device_bytes);
-    profile.downloaded_bytes += static_cast<double>(extent_.bytes());
+    profile.downloaded_bytes += static_cast<double>(film_->bytes());
     profile.peak = measure_peak(entry_, context_, queue_);
 }
 

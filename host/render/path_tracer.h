@@ -1,16 +1,20 @@
 #pragma once
 /// The device's side of a render: the film there, and the launches that fill it.
 
+#include "bands.h"
 #include "device/device_scene.h"
 #include "device/kernel_program.h"
+#include "device_film.h"
 #include "flatten/flat_scene.h"
 #include "launch_plan.h"
+#include "picture.h"
 #include "profile_recorder.h"
 #include "render.h"
 
 #include <chrono>
 #include <future>
 #include <memory>
+#include <vector>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -18,33 +22,37 @@ namespace clrender::inline CLR_PRECISION {
 /// next.
 int tile_of(const DeviceEntry &entry, const KernelConfig &config);
 
-/// What the device keeps of a picture: its pixels, and a record for each work-item's tile.
-struct FilmExtent {
-    std::size_t pixels, tiles_x, tiles_y;
+/// The tiles of the picture that a kernel of this kind renders.
+PictureTiles tiles_of(const FlatScene &flat);
 
-    FilmExtent(const FrameData &frame, std::size_t tile)
-        : pixels(static_cast<std::size_t>(frame.width) * frame.height),
-          tiles_x((frame.width + tile - 1) / tile), tiles_y((frame.height + tile - 1) / tile) {}
-
-    [[nodiscard]] std::size_t tiles() const { return tiles_x * tiles_y; }
-    [[nodiscard]] std::size_t film_bytes() const { return pixels * sizeof(FilmPixel); }
-    [[nodiscard]] std::size_t counter_bytes() const { return tiles() * sizeof(ItemCounters); }
-    [[nodiscard]] std::size_t bytes() const { return film_bytes() + counter_bytes(); }
-};
+/// The bands that the device renders the picture in.
+std::vector<Band> bands_of(const DeviceEntry &entry, const FlatScene &flat,
+                           const RenderOptions &options);
 
 /// One render: the device's side of the film and the launches that fill it.
 class PathTracer {
 public:
-    PathTracer(const DeviceEntry &entry, const FlatScene &flat, const RenderOptions &options);
+    /// Frees the arrays of `flat` as they are uploaded; its frame and its configuration stay.
+    PathTracer(const DeviceEntry &entry, FlatScene &flat, const RenderOptions &options);
 
     /// Starts to compile, on a thread of its own.
     void start_compiling();
     /// Waits for the kernel.
     void compile(RenderStats &stats);
     void upload(RenderStats &stats);
-    /// True if it was stopped.
-    bool render(int spp);
-    void read(RenderResult &result, PixelFormat format);
+    /// Renders `spp` samples a pixel into `picture`; true if it was stopped before that.
+    bool render(int spp, Picture &picture, RenderStats &stats);
+    /// Goes on from `done` samples a pixel, all of which are whole blocks, to `spp` of them; only
+    /// for pictures in one band, and only with no call of render(). True if it was stopped, which
+    /// leaves tiles with different numbers of samples: it cannot go on then.
+    bool advance(int done, int spp, Picture &picture, RenderStats &stats);
+    /// Whether the picture is rendered in one band.
+    [[nodiscard]] bool in_one_piece() const { return bands_.size() == 1; }
+    [[nodiscard]] const ControlLayout &control_layout() const { return control_; }
+    /// The control tiles of the picture as it stands.
+    [[nodiscard]] std::vector<ControlPixel> read_control() const { return film_->read_control(); }
+    /// Seconds of render() and advance() that were spent on reading the film.
+    [[nodiscard]] double seconds_read() const { return seconds_read_; }
     /// What is left for the profile, if there is one, after all else.
     void complete_profile(const RenderStats &stats);
 
@@ -54,15 +62,23 @@ private:
         cl::Event event;
         std::chrono::steady_clock::time_point start;
     };
+    enum class Ended { done, stopped, slow };
 
+    Ended preview(int spp, Picture &picture, RenderStats &stats);
+    Ended render_bands(int spp, bool may_be_slow, Picture &picture, RenderStats &stats);
+    void take(Picture &picture, const Band &band, const LaunchPlan &plan);
+    Ended run(LaunchPlan &plan, bool may_be_slow);
     void enqueue(const LaunchPlan::Launch &launch, cl::Event *event);
-    void finish(Pending &pending, LaunchPlan &plan, int spp);
+    void finish(Pending &pending, LaunchPlan &plan);
+    LaunchPlan plan_of(const Band &band, int spp, int first_block = 0);
+    void add_counters(RenderStats &stats) const;
 
     const DeviceEntry &entry_;
-    const FlatScene &flat_;
+    FlatScene &flat_;
     const RenderOptions &options_;
-    FilmExtent extent_;
-    ControlLayout control_layout_;
+    PictureTiles tiles_;
+    std::vector<Band> bands_;
+    ControlLayout control_;
     std::size_t group_;
     cl::Context context_;
     cl::CommandQueue queue_;
@@ -70,9 +86,12 @@ private:
     cl::Kernel kernel_;
     cl_uint launch_arguments_ = 0;
     std::unique_ptr<DeviceScene> scene_;
-    cl::Buffer film_, counters_, control_;
+    std::unique_ptr<DeviceFilm> film_;
+    LaunchPace pace_;
     std::unique_ptr<ProfileRecorder> recorder_; ///< where a profile is wanted
-    double paths_done_ = 0;
+    double paths_done_ = 0;                     ///< of the picture as it stands
+    double progress_ = 0, progress_total_ = 1;  ///< paths, with those that are traced again
+    double seconds_read_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};
 };
 

@@ -1,5 +1,7 @@
 #include "render_at_precision.h"
 
+#include "film/film_blocks.h"
+#include "flatten/film_filter.h"
 #include "flatten/flat_scene.h"
 #include "log.h"
 #include "path_tracer.h"
@@ -7,6 +9,8 @@
 
 #include <chrono>
 #include <fmt/core.h>
+#include <limits>
+#include <utility>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -41,69 +45,7 @@ FlattenOptions flatten_options(const RenderOptions &options) {
     return flatten_options;
 }
 
-} // namespace
-
-std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options) {
-    FlatScene flat = flatten(scene, flatten_options(options));
-    build_hierarchy(flat);
-    int tile = CLR_LEAST_TILE;
-    try {
-        tile = tile_of(choose_device(options.device), flat.config);
-    } catch (const DeviceError &) {
-        // A scene can be checked where there is no device: it will be one like this.
-    }
-    return flat.bytes() + FilmExtent(flat.frame, static_cast<std::size_t>(tile)).bytes();
-}
-
-RenderResult render_at_precision(const Scene &scene, const RenderOptions &options) {
-    RenderResult result;
-    RenderStats &stats = result.stats;
-    Stopwatch watch(options.profile);
-    const DeviceEntry entry = choose_device(options.device);
-    stats.device = entry.name;
-    stats.seconds_device = watch.lap("open the device");
-    log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
-
-    if (CLR_DOUBLE != 0 && !entry.has_double)
-        throw DeviceError(fmt::format("{} has no double precision (cl_khr_fp64)", entry.name));
-
-    FlatScene flat = flatten(scene, flatten_options(options));
-    const int spp = options.spp > 0 ? options.spp : scene.sample_count;
-    flat.config.DOUBLE_PRECISION = CLR_DOUBLE;
-    flat.config.LANES = CLR_DOUBLE ? 1 : options.lanes > 0 ? options.lanes : natural_lanes(entry);
-    flat.config.TILE = tile_of(entry, flat.config);
-    flat.config.SAMPLER = options.independent_sampler ? 1 : 0;
-    flat.config.PROFILE = options.profile != nullptr ? 1 : 0;
-    flat.frame.seed = options.seed;
-    flat.frame.total_samples = static_cast<uint>(spp);
-    // Independent samples need no control.
-    if (options.with_variance && !options.independent_sampler)
-        flat.frame.control_group = static_cast<uint>(choose_control_group(
-            {flat.frame.width, flat.frame.height, static_cast<std::size_t>(flat.config.TILE)}));
-    stats.lanes = flat.config.LANES;
-    stats.width = static_cast<int>(flat.frame.width);
-    stats.height = static_cast<int>(flat.frame.height);
-    stats.spp = spp;
-    stats.triangles = flat.triangle_count;
-
-    // The kernel is compiled while the hierarchy is being built.
-    PathTracer tracer(entry, flat, options);
-    tracer.start_compiling();
-    build_hierarchy(flat);
-    stats.host_bytes = flat.bytes();
-    stats.seconds_build = watch.lap("build");
-    tracer.compile(stats);
-    stats.seconds_compile = watch.lap("compile");
-    tracer.upload(stats);
-    stats.seconds_upload = watch.lap("upload");
-    result.interrupted = tracer.render(spp);
-    stats.seconds_render = watch.lap("render");
-    tracer.read(result, scene.film.pixel_format);
-    watch.lap("read");
-    if (options.profile != nullptr) {
-        tracer.complete_profile(stats);
-        watch.lap("measure peak");
-    }
+void warn_of_samples(const RenderStats &stats) {
     if (stats.nonfinite_samples > 0)
         log::warn(fmt::format("{} samples were not finite and count as black; the first in pixel "
                               "({}, {})",
@@ -112,7 +54,179 @@ RenderResult render_at_precision(const Scene &scene, const RenderOptions &option
         log::warn(fmt::format("{} pixels had sums beyond the film's range, which were clamped; the "
                               "first is ({}, {})",
                               stats.clamped_pixels, stats.clamped_x, stats.clamped_y));
+}
+
+DeviceEntry choose_device_for(const RenderOptions &options) {
+    DeviceEntry entry = choose_device(options.device);
+    log::detail(fmt::format("device: {} ({})", entry.name, entry.platform));
+    if (CLR_DOUBLE != 0 && !entry.has_double)
+        throw DeviceError(fmt::format("{} has no double precision (cl_khr_fp64)", entry.name));
+    return entry;
+}
+
+/// A scene on the device, and the picture that becomes of it.
+class Rendering : public AdvancingRender {
+public:
+    /// Flattens, compiles and uploads. Frees the shapes and images of the scene on the way.
+    Rendering(Scene &&scene, const RenderOptions &options);
+
+    /// Renders all samples of the options, in bands where the picture is large. Not together with
+    /// advance().
+    void render_all();
+    bool advance(int samples) override;
+    [[nodiscard]] int samples() const override { return done_; }
+    RenderResult read() override;
+    /// What is left for the profile, if there is one, after all else.
+    void complete_profile();
+    [[nodiscard]] bool in_one_piece() const { return tracer_->in_one_piece(); }
+
+private:
+    void configure();
+
+    RenderOptions options_;
+    Stopwatch watch_;
+    DeviceEntry entry_;
+    int spp_;
+    FlatScene flat_;
+    RenderStats stats_;
+    std::unique_ptr<PathTracer> tracer_;
+    std::unique_ptr<Picture> picture_;
+    int done_ = 0;
+    bool stopped_ = false;
+};
+
+Rendering::Rendering(Scene &&scene, const RenderOptions &options)
+    : options_(options), watch_(options.profile), entry_(choose_device_for(options)),
+      spp_(options.spp > 0 ? options.spp : scene.sample_count) {
+    stats_.seconds_device = watch_.lap("open the device");
+    const PixelFormat format = scene.film.pixel_format;
+    flat_ = flatten(scene, flatten_options(options_));
+    scene = {};
+    configure();
+
+    // The kernel is compiled while the hierarchy is being built.
+    tracer_ = std::make_unique<PathTracer>(entry_, flat_, options_);
+    tracer_->start_compiling();
+    build_hierarchy(flat_);
+    stats_.host_bytes = flat_.bytes();
+    stats_.seconds_build = watch_.lap("build");
+    tracer_->compile(stats_);
+    stats_.seconds_compile = watch_.lap("compile");
+    // Before the upload, which frees the table.
+    std::vector<double> spread{1.0};
+    if (flat_.config.BORDER > 0)
+        spread =
+            filter_spread(flat_.filter, double{flat_.frame.filter_radius}, flat_.config.BORDER);
+    tracer_->upload(stats_);
+    stats_.seconds_upload = watch_.lap("upload");
+    picture_ = std::make_unique<Picture>(
+        tiles_of(flat_), format, Picture::Layers{options_.with_variance, options_.with_samples},
+        flat_.frame.film_exponent, std::move(spread));
+}
+
+/// What the render decides of the kernel and of the frame.
+void Rendering::configure() {
+    KernelConfig &config = flat_.config;
+    config.DOUBLE_PRECISION = CLR_DOUBLE;
+    config.LANES = CLR_DOUBLE ? 1 : options_.lanes > 0 ? options_.lanes : natural_lanes(entry_);
+    config.TILE = tile_of(entry_, config);
+    config.SAMPLER = options_.independent_sampler ? 1 : 0;
+    config.PROFILE = options_.profile != nullptr ? 1 : 0;
+    FrameData &frame = flat_.frame;
+    frame.seed = options_.seed;
+    frame.total_samples = static_cast<uint>(spp_);
+    // Independent samples need no control.
+    if (options_.with_variance && !options_.independent_sampler)
+        frame.control_group = static_cast<uint>(choose_control_group(
+            {frame.width, frame.height, static_cast<std::size_t>(config.TILE)}));
+    stats_.device = entry_.name;
+    stats_.lanes = config.LANES;
+    stats_.width = static_cast<int>(frame.width);
+    stats_.height = static_cast<int>(frame.height);
+    stats_.spp = spp_;
+    stats_.triangles = flat_.triangle_count;
+}
+
+void Rendering::render_all() {
+    stopped_ = tracer_->render(spp_, *picture_, stats_);
+    done_ = stopped_ ? 0 : spp_;
+    stats_.seconds_render = watch_.lap("render") - tracer_->seconds_read();
+}
+
+bool Rendering::advance(int samples) {
+    const int end = std::min(whole_blocks(samples), spp_);
+    if (stopped_)
+        return false;
+    if (end <= done_)
+        return true;
+    stopped_ = tracer_->advance(done_, end, *picture_, stats_);
+    stats_.seconds_render += watch_.lap("render");
+    if (!stopped_)
+        stats_.spp = done_ = end;
+    return !stopped_;
+}
+
+RenderResult Rendering::read() {
+    RenderResult result;
+    result.interrupted = stopped_;
+    if (stopped_)
+        result.gaps = picture_->fill_gaps();
+    stats_.clamped_pixels = picture_->clamped.count;
+    stats_.clamped_x = static_cast<int>(picture_->clamped.first % flat_.frame.width);
+    stats_.clamped_y = static_cast<int>(picture_->clamped.first / flat_.frame.width);
+    result.stats = stats_;
+    result.image = picture_->image;
+    result.samples = picture_->samples;
+    result.variance = picture_->variance;
+    if (options_.with_variance) {
+        result.error.factor = variance_factor(tracer_->control_layout(), tracer_->read_control(),
+                                              result.image, flat_.frame.film_exponent);
+        for (float &value : result.variance.f32)
+            value *= static_cast<float>(result.error.factor.value);
+        result.error.relative_variance = mean_relative_variance(result.image, result.variance);
+    }
     return result;
+}
+
+void Rendering::complete_profile() {
+    if (options_.profile == nullptr)
+        return;
+    tracer_->complete_profile(stats_);
+    watch_.lap("measure peak");
+}
+
+} // namespace
+
+std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options) {
+    FlatScene flat = flatten(scene, flatten_options(options));
+    build_hierarchy(flat);
+    flat.config.TILE = CLR_LEAST_TILE;
+    DeviceEntry entry;
+    try {
+        entry = choose_device(options.device);
+        flat.config.TILE = tile_of(entry, flat.config);
+    } catch (const DeviceError &) {
+        // A scene can be checked where there is no device: it will be one like this, and large.
+        entry.max_allocation_bytes = entry.memory_bytes = std::numeric_limits<std::size_t>::max();
+    }
+    return flat.bytes() + band_bytes(tiles_of(flat), bands_of(entry, flat, options).front());
+}
+
+RenderResult render_at_precision(Scene &&scene, const RenderOptions &options) {
+    Rendering rendering(std::move(scene), options);
+    rendering.render_all();
+    RenderResult result = rendering.read();
+    rendering.complete_profile();
+    warn_of_samples(result.stats);
+    return result;
+}
+
+std::unique_ptr<AdvancingRender> start_at_precision(Scene &&scene, const RenderOptions &options) {
+    auto rendering = std::make_unique<Rendering>(std::move(scene), options);
+    if (!rendering->in_one_piece())
+        throw DeviceError("the picture is too large to be looked at while it is rendered: its sums "
+                          "do not fit on the device in one piece");
+    return rendering;
 }
 
 } // namespace clrender::inline CLR_PRECISION

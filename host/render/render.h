@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -23,12 +24,15 @@ struct RenderOptions {
     bool brute_force = false;         ///< test every triangle
     bool pixel_centers = false;       ///< all samples at pixel centres
     bool independent_sampler = false; ///< in place of Sobol' points
-    bool with_variance = false;       ///< RenderResult::variance and its error are wanted
     Strategy strategy = Strategy::mis;
     int light_samples = 0;            ///< where a path first meets a diffuse surface: a power
                                       ///< of 2; 0: chosen
     int batch = 0;                    ///< blocks of samples in one launch; 0: chosen
     int tile = 0;                     ///< work-items in one launch; 0: chosen
+    int band_rows = 0;                ///< rows of tiles in one band; 0: chosen
+    bool preview = false;             ///< a few samples of all pixels first, however fast
+    bool with_variance = false;       ///< RenderResult::variance and error are wanted
+    bool with_samples = false;        ///< RenderResult::samples is wanted
     std::set<std::string> generality; ///< as FlattenOptions::generality
     std::string kernel_dir;           ///< kernel sources in place of the embedded ones
     Profile *profile = nullptr;       ///< filled where given, with a kernel that counts
@@ -58,22 +62,26 @@ struct RenderStats {
 
 /// What a render knows of its own noise; not of what is wrong in every render alike.
 struct ErrorEstimate {
-    /// The mean over pixels and colour channels of variance / (value^2 + .01), the expected relMSE
-    /// against a picture without noise; infinite where a pixel has fewer than two samples.
+    /// The mean over pixels and colour channels of variance / (value^2 + .01): the expected relMSE
+    /// against a picture without noise. Infinite where a pixel has fewer than two samples.
     double relative_variance = 0;
-    /// The variance over that of independent samples, as control tiles tell, and its standard
-    /// error.
+    /// The variance over that of independent samples, as the control tiles tell.
     VarianceFactor factor;
 };
 
 /// `image` has the channels of the film's pixel format; `variance`, where it is wanted, has as many
-/// and holds the estimated variance of each pixel's mean (of luminance: an upper bound).
+/// and holds the estimated variance of each pixel's mean (of luminance: an upper bound), infinite
+/// where there are fewer than two samples. Neighbouring pixels share samples where the filter is
+/// wider than a pixel, so their errors agree: the variances do not add up to that of a sum of
+/// pixels. `samples` has one channel: the samples that lie in each pixel.
 struct RenderResult {
     Image image;
     Image variance;
+    Image samples;
     ErrorEstimate error; ///< where the variance is wanted
     RenderStats stats;
     bool interrupted = false;
+    std::size_t gaps = 0; ///< pixels without a sample, which show their neighbours
 };
 
 /// Bytes that rendering the scene takes on a device: what is uploaded, and the film. Needs no
@@ -82,5 +90,28 @@ std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options
 
 /// Flattens, compiles, uploads and renders. Throws DeviceError.
 RenderResult render_scene(const Scene &scene, const RenderOptions &options = {});
+
+/// The same, and frees the shapes and images of the scene as soon as they are flattened.
+RenderResult render_scene(Scene &&scene, const RenderOptions &options = {});
+
+/// A render that is looked at and goes on. The picture of N samples is, to the bit, that of a
+/// render of N samples in all, where a block of samples ends at N (film_blocks.h).
+class AdvancingRender {
+public:
+    virtual ~AdvancingRender() = default;
+
+    /// Renders until every pixel has `samples` samples, rounded up to the end of a block, or
+    /// RenderOptions::spp, which is the end. Returns false if it was stopped before: it cannot go
+    /// on then.
+    virtual bool advance(int samples) = 0;
+    /// Samples that every pixel has.
+    [[nodiscard]] virtual int samples() const = 0;
+    /// The picture as it stands.
+    virtual RenderResult read() = 0;
+};
+
+/// Flattens, compiles and uploads; takes no sample yet. Throws DeviceError, also where the picture
+/// is so large that it is rendered in bands.
+std::unique_ptr<AdvancingRender> start_render(Scene &&scene, const RenderOptions &options = {});
 
 } // namespace clrender

@@ -8,6 +8,8 @@ namespace clrender::inline CLR_PRECISION {
 
 std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options);
 
-RenderResult render_at_precision(const Scene &scene, const RenderOptions &options);
+RenderResult render_at_precision(Scene &&scene, const RenderOptions &options);
+
+std::unique_ptr<AdvancingRender> start_at_precision(Scene &&scene, const RenderOptions &options);
 
 } // namespace clrender::inline CLR_PRECISION

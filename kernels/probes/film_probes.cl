@@ -33,6 +33,6 @@ __kernel void probe_film_pixel(__global const FrameData *frame, __global FilmPix
             real weight = pick(on, real_of(1.0f), real_of(0.0f));
             block_add_lanes(&scene, &block, 0, 0, on, 0, v3(value, value, value), weight, weight);
         }
-        film_add(&scene, film, 0, 0, end - start, &block);
+        film_add(&scene, film, 0, 0, 1, end - start, &block);
     }
 }

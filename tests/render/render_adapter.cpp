@@ -22,6 +22,8 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.generality = how.generality;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;
+    options.band_rows = how.band_rows;
+    options.preview = how.preview;
     options.with_variance = true;
     RenderResult result = render_scene(scene, options);
     MeasuredImage measured{std::move(result.image), std::move(result.variance), {}};

@@ -21,6 +21,8 @@ struct TestRender {
     bool pixel_centers = false;
     int batch_blocks = 0;                  ///< as in RenderOptions
     int tile_items = 0;                    ///< as in RenderOptions
+    int band_rows = 0;                     ///< as in RenderOptions
+    bool preview = false;                  ///< as in RenderOptions
     std::set<std::string> generality = {}; ///< as in RenderOptions
     int light_samples = 0;                 ///< as in RenderOptions
     Strategy strategy = Strategy::mis;

@@ -2,6 +2,8 @@
 
 #include "render_adapter.h"
 
+#include "render/render.h"
+
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
@@ -205,6 +207,81 @@ TEST_CASE("batches and tiles do not change a bit of the picture") {
             CHECK(render_measured(scene, {.spp = spp, .tile_items = tile}).mean.f32 ==
                   whole.mean.f32);
         }
+    }
+}
+
+TEST_CASE("bands and a preview do not change a bit of the picture") {
+    Scene scene = small_scene(1);
+    for (const FilterKind filter : {FilterKind::box, FilterKind::tent}) {
+        scene.film.filter.kind = filter;
+        constexpr int spp = 100;
+        const auto whole = render_measured(scene, {.spp = spp});
+        for (const int rows : {1, 3})
+            for (const bool preview : {false, true}) {
+                INFO("bands of " << rows << " rows of tiles" << (preview ? ", a preview" : ""));
+                const auto bands =
+                    render_measured(scene, {.spp = spp, .band_rows = rows, .preview = preview});
+                const bool same_mean = bands.mean.f32 == whole.mean.f32;
+                const bool same_variance = bands.variance.f32 == whole.variance.f32;
+                CHECK(same_mean);
+                CHECK(same_variance);
+            }
+    }
+}
+
+TEST_CASE("a render that is stopped in its first pass leaves a picture without holes") {
+    // What has no sample yet shows its neighbours: the picture is rough but nowhere black.
+    Scene scene = small_scene(1);
+    for (const FilterKind filter : {FilterKind::box, FilterKind::tent}) {
+        scene.film.filter.kind = filter;
+        const auto whole = render_measured(scene, {.spp = 64});
+        const double floor = 0.2 * channel_mean(whole.mean, 1);
+        for (const int bands : {0, 2})
+            for (const int launches : {1, 3, 7}) {
+                INFO("stopped after " << launches << " launches, bands of " << bands);
+                int left = launches;
+                RenderOptions options;
+                options.spp = 6400;
+                options.tile = 2;
+                options.band_rows = bands;
+                options.preview = bands > 0;
+                options.with_variance = true;
+                options.should_stop = [&] { return --left <= 0; };
+                const RenderResult stopped = render_scene(scene, options);
+                CHECK(stopped.interrupted);
+                CHECK(stopped.gaps > 0);
+                CHECK(stopped.gaps < 48 * 32);
+                CHECK(channel_mean(stopped.image, 1) > floor);
+                std::size_t dark = 0, unknown = 0;
+                for (std::size_t i = 0; i < stopped.image.f32.size(); i += 3) {
+                    dark += stopped.image.f32[i + 1] > 0 ? 0 : 1;
+                    unknown += std::isinf(stopped.variance.f32[i]) ? 1 : 0;
+                }
+                CHECK(dark == 0);
+                // And of pixels whose neighbours have none, or that have a single one.
+                CHECK(unknown >= stopped.gaps);
+            }
+    }
+}
+
+TEST_CASE("a render that is stopped later has the samples of its passes everywhere") {
+    Scene scene = small_scene(1);
+    scene.film.filter.kind = FilterKind::tent;
+    const auto whole = render_measured(scene, {.spp = 1024, .sobol = true});
+    for (const int bands : {0, 2}) {
+        INFO("bands of " << bands);
+        int left = bands > 0 ? 10 : 40;
+        RenderOptions options;
+        options.spp = 1 << 20;
+        options.tile = bands > 0 ? 1000 : 2;
+        options.band_rows = bands;
+        options.preview = true;
+        options.with_variance = true;
+        options.should_stop = [&] { return --left <= 0; };
+        const RenderResult stopped = render_scene(scene, options);
+        CHECK(stopped.interrupted);
+        CHECK(stopped.gaps == 0);
+        CHECK(channel_mean(stopped.image, 1) == Approx(channel_mean(whole.mean, 1)).epsilon(0.1));
     }
 }
 

@@ -1,0 +1,59 @@
+#pragma once
+/// The film on the device: the sums of the pixels that one band reaches, and its tiles' counters.
+
+#include "bands.h"
+#include "device/cl_context.h"
+#include "film/control.h"
+#include "shared/launch_data.h"
+
+#include <vector>
+
+namespace clrender {
+
+/// What a launch has to be told of the band: the pixel rows that the buffer holds, and the tile
+/// that its first counters belong to.
+struct FilmWindow {
+    cl_uint first_row, end_row, first_tile;
+};
+
+class DeviceFilm {
+public:
+    /// Room for each of `bands`, one at a time, and for the control tiles of all. Throws
+    /// DeviceError.
+    DeviceFilm(const cl::Context &context, const cl::CommandQueue &queue, const PictureTiles &tiles,
+               const std::vector<Band> &bands, const ControlLayout &control);
+
+    /// Makes room for a band. Rows that the band before it reaches as well keep their sums, if it
+    /// was that one's turn before; all others, and the counters, become zero.
+    void begin(const Band &band);
+    /// The next band does not follow on the last one: it is the first of a new picture, and the
+    /// control tiles become zero.
+    void forget();
+
+    /// Binds the buffers to arguments from `index` on; returns the index behind them.
+    cl_uint bind(cl::Kernel &kernel, cl_uint index) const;
+    [[nodiscard]] FilmWindow window() const;
+
+    /// The sums of `count` rows of pixels, counted over the whole picture.
+    void read_rows(std::size_t first_row, std::size_t count, FilmPixel *pixels) const;
+    /// The counters of the band's tiles.
+    [[nodiscard]] std::vector<ItemCounters> read_counters() const;
+
+    /// Of all control tiles, in the order of control.h.
+    [[nodiscard]] std::vector<ControlPixel> read_control() const;
+
+    [[nodiscard]] std::size_t bytes() const {
+        return film_bytes_ + counter_bytes_ + control_bytes_;
+    }
+
+private:
+    cl::CommandQueue queue_;
+    PictureTiles tiles_;
+    std::size_t row_bytes_;
+    std::size_t film_bytes_ = 0, counter_bytes_ = 0, control_bytes_ = 0;
+    cl::Buffer film_, counters_, control_;
+    Band band_;
+    std::size_t kept_end_row_ = 0; ///< end of the rows in the buffer whose sums go on
+};
+
+} // namespace clrender
