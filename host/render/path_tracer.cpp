@@ -131,8 +131,7 @@ void PathTracer::compile(RenderStats &stats) {
 }
 
 void PathTracer::upload(RenderStats &stats) {
-    const std::size_t film_bytes = band_bytes(tiles_, bands_.front());
-    scene_ = std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, film_bytes);
+    scene_ = std::make_unique<DeviceScene>(context_, queue_, flat_);
     film_ = std::make_unique<DeviceFilm>(context_, queue_, tiles_, bands_, control_);
     with_device("binding the buffers", [&] {
         launch_arguments_ = film_->bind(kernel_, scene_->bind(kernel_));
