@@ -169,7 +169,10 @@ int render_command(const cli::Options &options) {
     }
 
     const std::string name = scene.name;
-    const RenderResult result = render_scene(std::move(scene), how);
+    RenderResult result = render_scene(std::move(scene), how);
+    // Beside a large picture it would be most of the memory.
+    if (options.layers.count("variance") == 0)
+        result.variance = Image();
     progress.finish();
 
     activity = "writing the pictures";
