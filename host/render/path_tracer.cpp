@@ -184,6 +184,9 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan) {
     progress_ += paths;
     if (options_.on_progress)
         options_.on_progress(progress_ / progress_total_);
+    if (!has_samples_)
+        log::detail("rendering: the first launch has ended");
+    has_samples_ = true;
 }
 
 /// Runs the launches of a plan. Ends as `slow` where that is allowed and the first pass turns out
