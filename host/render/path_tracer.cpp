@@ -239,7 +239,7 @@ void PathTracer::take(Picture &picture, const Band &band, const LaunchPlan &plan
 
 /// Gives every pixel a few samples, which are taken again with all others.
 PathTracer::Ended PathTracer::preview(int spp, Picture &picture, RenderStats &stats) {
-    const int samples = preview_samples(spp);
+    const int samples = preview_samples(spp, bands_.size() > 1);
     progress_ = 0;
     progress_total_ = 1 + static_cast<double>(samples) / spp;
     scene_->set_samples(queue_, samples);
