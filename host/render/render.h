@@ -3,6 +3,7 @@
 
 #include "device/kernel_config.h"
 #include "film/control.h"
+#include "memory_need.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -84,9 +85,9 @@ struct RenderResult {
     std::size_t gaps = 0; ///< pixels without a sample, which show their neighbours
 };
 
-/// Bytes that rendering the scene takes on a device: what is uploaded, and the film. Needs no
-/// device.
-std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options = {});
+/// What rendering the scene takes, where the kernel does not have to be compiled. Needs no device;
+/// frees the shapes and images of the scene.
+MemoryNeed memory_needed(Scene &&scene, const RenderOptions &options = {});
 
 /// Flattens, compiles, uploads and renders. Throws DeviceError.
 RenderResult render_scene(const Scene &scene, const RenderOptions &options = {});
