@@ -81,7 +81,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.tile = options.tile;
     r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
-    r.with_variance = !options.stats.empty() || options.layers.count("variance") != 0;
+    r.with_variance = options.layers.count("variance") != 0;
     r.with_samples = options.layers.count("samples") != 0;
     r.profile = options.profile ? &profile : nullptr;
     r.band_rows = options.band_rows;

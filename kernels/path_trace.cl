@@ -396,12 +396,14 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
     uint rays = 0;
     ItemCounters uncounted = {0u, 0u, 0u, 0u};
     BlockSums block;
+    uint renderings = 1u;
+#if HAS_VARIANCE
     const uint all_tiles = tiles * ((frame->height + TILE - 1u) / TILE);
     const uint group = frame->control_group > 0u ? tile / frame->control_group : 0u;
-    const uint renderings = frame->control_group > 0u &&
-                                    tile == clr_control_tile(group, frame->control_group, all_tiles)
-                                ? 2u
-                                : 1u;
+    if (frame->control_group > 0u &&
+        tile == clr_control_tile(group, frame->control_group, all_tiles))
+        renderings = 2u;
+#endif
     for (uint b = first_block; b < end_block; ++b) {
         work.first_sample = CLR_BLOCK_START(b);
         work.end_sample = min(CLR_BLOCK_START(b + 1u), frame->total_samples);
@@ -415,9 +417,11 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
             if (rendering == 0u)
                 film_add(&scene, film, work.x, work.y - (int)film_row, (int)(film_end - film_row),
                          samples, &block);
+#if HAS_VARIANCE
             if (renderings > 1u)
                 control_add(&scene, control + (size_t)group * TILE_PIXELS, &block,
                             rendering == 0u ? 1.0f : -1.0f);
+#endif
         }
     }
     const uint low = counters.rays_low + rays;

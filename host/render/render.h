@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
@@ -65,7 +66,8 @@ struct RenderStats {
 struct ErrorEstimate {
     /// The mean over pixels and colour channels of variance / (value^2 + .01): the expected relMSE
     /// against a picture without noise. Infinite where a pixel has fewer than two samples.
-    double relative_variance = 0;
+    /// Not a number where the variance is not wanted.
+    double relative_variance = std::numeric_limits<double>::quiet_NaN();
     /// The variance over that of independent samples, as the control tiles tell.
     VarianceFactor factor;
 };
