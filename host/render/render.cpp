@@ -2,7 +2,6 @@
 
 #include "device/device_scene.h"
 #include "film/film_blocks.h"
-#include "flatten/film_filter.h"
 #include "flatten/flat_scene.h"
 #include "log.h"
 #include "memory_need.h"
@@ -141,16 +140,11 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     tracer_->compile(stats_);
     stats_.seconds_compile = watch_.lap("compile");
     check_memory_need(need_of(flat_, entry_, options_, values_of(format, options_), false), entry_);
-    // Before the upload, which frees the table.
-    std::vector<double> spread{1.0};
-    if (flat_.config.BORDER > 0)
-        spread =
-            filter_spread(flat_.filter, double{flat_.frame.filter_radius}, flat_.config.BORDER);
     tracer_->upload(stats_);
     stats_.seconds_upload = watch_.lap("upload");
     picture_ = std::make_unique<Picture>(
         tiles_of(flat_), format, Picture::Layers{options_.with_variance, options_.with_samples},
-        flat_.frame.film_exponent, std::move(spread));
+        flat_.frame.film_exponent);
 }
 
 /// What the render decides of the kernel and of the frame.
