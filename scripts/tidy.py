@@ -59,11 +59,14 @@ def main():
     settings += subprocess.run([TOOL, "--version"], capture_output=True, check=True).stdout
 
     wanted = [pathlib.Path(name).resolve() for name in sys.argv[2:]]
-    changed = []
+    changed, seen = [], set()
     for entry in json.loads((build / "compile_commands.json").read_text()):
         source = pathlib.Path(entry["file"])
-        if ROOT / "host" not in source.parents or (wanted and source not in wanted):
+        # What is compiled in both precisions is one text, and is looked at once.
+        if ROOT / "host" not in source.parents or source in seen or (
+                wanted and source not in wanted):
             continue
+        seen.add(source)
         mark = cache / fingerprint(source, entry["command"], settings)
         if not mark.exists():
             changed.append((source, mark))

@@ -73,6 +73,8 @@ struct FlatScene {
 struct FlattenOptions {
     bool brute_force = false;   ///< --accel none
     bool pixel_centers = false; ///< all samples at pixel centres
+    bool splat_filters = true;  ///< samples serve all pixels that the filter reaches, where it is
+                                ///< not too wide; else the filter is sampled
     Strategy strategy = Strategy::mis;
     int light_samples = 0;   ///< as LIGHT_SAMPLES in kernel_config.def; 0: chosen
     Generality generality{}; ///< what the kernel is to be able to do beyond the scene

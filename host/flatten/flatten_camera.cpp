@@ -63,9 +63,10 @@ void flatten_film(Flattening &work) {
         flat.config.FILTER = 2;
     else if (film.filter.kind != FilterKind::box) {
         // Splatting uses a sample for all pixels around it: three times fewer samples for the same
-        // noise with the default filter. Very wide filters would reach too far for it.
+        // noise with the default filter. Very wide filters would reach too far for it, and on a GPU
+        // a work-item would have to render a whole tile.
         const int border = static_cast<int>(std::ceil(filter_radius(film.filter) - 0.5));
-        flat.config.FILTER = border <= max_border ? 3 : 1;
+        flat.config.FILTER = border <= max_border && work.options.splat_filters ? 3 : 1;
         flat.config.BORDER = flat.config.FILTER == 3 ? border : 0;
         flat.filter = tabulate_filter(film.filter);
     }

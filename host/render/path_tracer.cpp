@@ -24,6 +24,9 @@ constexpr int gpu_tile = 1;
 constexpr std::size_t cpu_group = 1;
 constexpr std::size_t gpu_group = 64;
 
+/// Work-items that hide the latency of a GPU's memory, for each of its compute units.
+constexpr std::size_t gpu_items_per_unit = 2048;
+
 /// Arguments of the kernel that are numbers, the last ones; the rest are buffers.
 constexpr cl_uint launch_numbers = 9;
 
@@ -97,7 +100,8 @@ PathTracer::PathTracer(const DeviceEntry &entry, FlatScene &flat, const RenderOp
                                                        flat.frame.control_group},
       group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group),
       pace_(tiles_.columns(), tiles_.rows(),
-            round_up(static_cast<std::size_t>(entry.compute_units) * (entry.is_cpu ? 1 : 4),
+            round_up(static_cast<std::size_t>(entry.compute_units) *
+                         (entry.is_cpu ? 1 : gpu_items_per_unit),
                      group_)) {
     with_device("opening the device", [&] {
         context_ = cl::Context(entry.device);

@@ -36,10 +36,11 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-FlattenOptions flatten_options(const RenderOptions &options) {
+FlattenOptions flatten_options(const DeviceEntry &entry, const RenderOptions &options) {
     FlattenOptions flatten_options;
     flatten_options.brute_force = options.brute_force;
     flatten_options.pixel_centers = options.pixel_centers;
+    flatten_options.splat_filters = entry.is_cpu;
     flatten_options.strategy = options.strategy;
     flatten_options.light_samples = options.light_samples;
     flatten_options.generality = options.generality;
@@ -127,7 +128,7 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
       spp_(options.spp > 0 ? options.spp : scene.sample_count) {
     stats_.seconds_device = watch_.lap("open the device");
     const PixelFormat format = scene.film.pixel_format;
-    flat_ = flatten(scene, flatten_options(options_));
+    flat_ = flatten(scene, flatten_options(entry_, options_));
     scene = {};
     configure();
 
@@ -220,23 +221,27 @@ void Rendering::complete_profile() {
     watch_.lap("measure peak");
 }
 
+/// A scene can be checked where there is no device: it will be a CPU's, and large.
+DeviceEntry device_or_large_cpu(const std::string &spec) {
+    try {
+        return choose_device(spec);
+    } catch (const DeviceError &) {
+        DeviceEntry entry;
+        entry.is_cpu = true;
+        entry.max_allocation_bytes = entry.memory_bytes = std::numeric_limits<std::size_t>::max();
+        return entry;
+    }
+}
+
 } // namespace
 
 MemoryNeed memory_at_precision(Scene &&scene, const RenderOptions &options) {
-    FlatScene flat = flatten(scene, flatten_options(options));
+    const DeviceEntry entry = device_or_large_cpu(options.device);
+    FlatScene flat = flatten(scene, flatten_options(entry, options));
     const std::size_t values = values_of(scene.film.pixel_format, options);
     scene = {};
     build_hierarchy(flat);
-    flat.config.TILE = CLR_LEAST_TILE;
-    DeviceEntry entry;
-    entry.is_cpu = true;
-    try {
-        entry = choose_device(options.device);
-        flat.config.TILE = tile_of(entry, flat.config);
-    } catch (const DeviceError &) {
-        // A scene can be checked where there is no device: it will be one like this, and large.
-        entry.max_allocation_bytes = entry.memory_bytes = std::numeric_limits<std::size_t>::max();
-    }
+    flat.config.TILE = tile_of(entry, flat.config);
     flat.frame.control_group = static_cast<uint>(control_group_of(flat, options));
     return need_of(flat, entry, options, values, true);
 }

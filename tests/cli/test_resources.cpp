@@ -119,7 +119,7 @@ TEST_CASE("The second signal ends the run at once") {
 TEST_CASE("A check tells the memory of the process and of the device within a tenth") {
     const TempFolder folder;
     folder.write("scene.xml", bright_scene);
-    const std::string size = "2400x1600";
+    const std::string size = "3200x2400";
     const ProgramResult check = run_clrender(folder.path(), {"--check", "scene.xml", "-r", size});
     REQUIRE(check.exit_code == 0);
     const ProgramResult render = run_clrender(

@@ -144,8 +144,9 @@ TEST_CASE("constants over 2^26 samples add up to 1e-6, and have no variance") {
         CHECK(pixel.clamped == 0);
         CAPTURE(value, mean);
         CHECK(std::abs(mean / double{value} - 1) <= 1e-6);
+        // A device that contracts a product and a sum leaves the rounding of the product.
         for (int channel = 0; channel < 4; ++channel)
-            CHECK(sums.scatter(channel) == 0);
+            CHECK(sums.scatter(channel) <= 0x1p-48 * samples);
     }
 }
 
