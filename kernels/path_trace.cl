@@ -617,7 +617,7 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
                 film_add(&scene, film, work.x, work.y - (int)film_row, (int)(film_end - film_row),
                          samples, &block);
             if (renderings > 1u)
-                control_add(control + (size_t)group * TILE_PIXELS, samples, &block,
+                control_add(&scene, control + (size_t)group * TILE_PIXELS, &block,
                             rendering == 0u ? 1.0f : -1.0f);
         }
     }

@@ -3,7 +3,6 @@
 #include "film_sums.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <tbb/parallel_for.h>
@@ -15,7 +14,7 @@ namespace {
 
 /// Pixels of control tiles: as many for a figure to a tenth, where some pixels are noisier than
 /// others; and the share of all pixels where that is more.
-constexpr std::size_t least_pixels = 1024;
+constexpr std::size_t least_pixels = 2048;
 constexpr std::size_t tiles_per_control_tile = 100;
 
 /// As relMSE: keeps dark pixels from ruling the relative error.
@@ -25,22 +24,37 @@ std::size_t colour_channels(const Image &image) {
     return image.channels <= 2 ? 1 : 3;
 }
 
-/// The weight of a squared error in the value of a pixel: by the median of the pixels around it,
-/// since a value that is too bright by its own noise would weigh it too lightly.
-double weight_of(const Image &image, std::size_t x, std::size_t y, std::size_t channel) {
+/// The weight of a squared error in a value.
+double weight_of(double value) {
+    return 1 / (value * value + epsilon);
+}
+
+/// The mean of the pixels around one, which its own noise does not touch.
+double mean_around(const Image &image, std::size_t x, std::size_t y, std::size_t channel) {
     const auto width = static_cast<std::size_t>(image.width);
     const auto height = static_cast<std::size_t>(image.height);
     const auto channels = static_cast<std::size_t>(image.channels);
-    channel = std::min(channel, colour_channels(image) - 1);
-    std::array<float, 9> around{};
-    std::size_t count = 0;
+    double sum = 0, count = 0;
     for (std::size_t j = y - std::min<std::size_t>(y, 1); j < std::min(y + 2, height); ++j)
         for (std::size_t i = x - std::min<std::size_t>(x, 1); i < std::min(x + 2, width); ++i)
-            around[count++] = image.f32[(j * width + i) * channels + channel];
-    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(count));
-    const double value = *middle;
-    return 1 / (value * value + epsilon);
+            if (i != x || j != y) {
+                sum += double{image.f32[(j * width + i) * channels + channel]};
+                ++count;
+            }
+    return count > 0 ? sum / count : double{image.f32[channel]};
+}
+
+/// A value that is known to a quarter is its own; one that is not is too bright where its error is
+/// large, and would weigh it too lightly.
+double relative_variance(const Image &image, const Image &variance, std::size_t x, std::size_t y,
+                         std::size_t channel) {
+    constexpr double known = 1.0 / 16;
+    const std::size_t i =
+        (y * static_cast<std::size_t>(image.width) + x) * static_cast<std::size_t>(image.channels) +
+        channel;
+    const double value = double{image.f32[i]}, square = double{variance.f32[i]};
+    const bool is_known = square < known * value * value;
+    return square * weight_of(is_known ? value : mean_around(image, x, y, channel));
 }
 
 /// Squared differences in a control tile, and what scatter makes expect of them.
@@ -57,7 +71,8 @@ Squares squares_of_tile(const ControlLayout &layout, std::size_t tile, const Con
         for (std::size_t x = 0; x < std::min(layout.side, layout.width - left); ++x) {
             const ControlPixel &pixel = pixels[y * layout.side + x];
             for (std::size_t c = 0; c < 3; ++c) {
-                const double weight = weight_of(image, left + x, top + y, c);
+                const std::size_t channel = std::min(c, colour_channels(image) - 1);
+                const double weight = weight_of(mean_around(image, left + x, top + y, channel));
                 const double difference = units.difference(pixel, static_cast<int>(c));
                 sum.measured += weight * difference * difference;
                 sum.expected += weight * units.scatter(pixel, static_cast<int>(c));
@@ -105,7 +120,6 @@ VarianceFactor variance_factor(const ControlLayout &layout, std::span<const Cont
 }
 
 double mean_relative_variance(const Image &image, const Image &variance) {
-    const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t colours = colour_channels(image);
     const auto width = static_cast<std::size_t>(image.width);
     const auto height = static_cast<std::size_t>(image.height);
@@ -114,8 +128,7 @@ double mean_relative_variance(const Image &image, const Image &variance) {
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         for (std::size_t x = 0; x < width; ++x)
             for (std::size_t c = 0; c < colours; ++c)
-                rows[y] += weight_of(image, x, y, c) *
-                           double{variance.f32[(y * width + x) * channels + c]};
+                rows[y] += relative_variance(image, variance, x, y, c);
     });
     return std::accumulate(rows.begin(), rows.end(), 0.0) /
            static_cast<double>(std::max<std::size_t>(width * height, 1) * colours);

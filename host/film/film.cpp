@@ -51,38 +51,6 @@ Channels mean(const PixelSums &sums) {
     return mean;
 }
 
-/// Of each pixel the sum of squared distances of its samples from their mean; infinite where there
-/// are too few samples to tell.
-std::vector<Channels> scatter(const Film &film) {
-    std::vector<Channels> all;
-    all.reserve(film.pixels.size());
-    const FilmUnits units(film.exponent);
-    for (const FilmPixel &pixel : film.pixels) {
-        const PixelSums sums(pixel, units);
-        Channels &scatter = all.emplace_back();
-        for (int c = 0; c < 4; ++c)
-            scatter[static_cast<std::size_t>(c)] =
-                sums.samples() > 1 ? sums.scatter(c) : std::numeric_limits<double>::infinity();
-    }
-    return all;
-}
-
-/// Each value replaced by the sum of those around it along one axis, times `spread`. `count` values
-/// lie along the axis, `step` apart, in each of the `lines` that begin `line_step` apart.
-std::vector<Channels> spread_along(const std::vector<Channels> &values,
-                                   const std::vector<double> &spread, std::size_t count,
-                                   std::size_t step, std::size_t lines, std::size_t line_step) {
-    const std::size_t border = spread.size() / 2;
-    std::vector<Channels> result(values.size(), Channels{});
-    for (std::size_t line = 0; line < lines; ++line)
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t j = i - std::min(i, border); j < std::min(i + border + 1, count); ++j)
-                for (std::size_t c = 0; c < 4; ++c)
-                    result[line * line_step + i * step][c] +=
-                        spread[border + j - i] * values[line * line_step + j * step][c];
-    return result;
-}
-
 /// The sum of the channels times their coefficients; those that do not count may be infinite.
 double combine(const Rgb &coefficients, const Rgb &colour) {
     double sum = 0;
@@ -141,16 +109,13 @@ Image film_samples(const Film &film) {
 }
 
 Image film_variance(const Film &film, PixelFormat format) {
-    const auto width = static_cast<std::size_t>(film.width);
-    const auto height = static_cast<std::size_t>(film.height);
-    std::vector<Channels> values = scatter(film);
-    values = spread_along(values, film.spread, width, 1, height, width);
-    values = spread_along(values, film.spread, height, width, width, 1);
     const FilmUnits units(film.exponent);
     const auto deviation = [&](std::size_t i, std::size_t c) {
-        const double weight = PixelSums(film.pixels[i], units).weight();
-        return weight != 0 ? std::sqrt(values[i][c]) / std::abs(weight)
-                           : std::numeric_limits<double>::infinity();
+        const PixelSums sums(film.pixels[i], units);
+        const double weight = sums.weight();
+        return weight != 0 && sums.samples() > 1
+                   ? std::sqrt(sums.scatter(static_cast<int>(c))) / std::abs(weight)
+                   : std::numeric_limits<double>::infinity();
     };
     Image image = make_image(
         film.width, film.height, colour_rows(format), has_alpha(format),

@@ -13,10 +13,6 @@ namespace clrender {
 struct Film {
     int width = 0, height = 0;
     int exponent = 0; ///< FrameData::film_exponent
-    /// What a sample adds to the variance of the pixels around it, along one axis of the separable
-    /// filter, the pixel it lies in in the middle: the mean of the squared filter over the sample's
-    /// places in its pixel (filter_spread()). {1} where a sample counts for its own pixel alone.
-    std::vector<double> spread{1.0};
     std::vector<FilmPixel> pixels;
 };
 
@@ -28,9 +24,8 @@ Image film_samples(const Film &film);
 
 /// The estimated variance of each mean, were the samples of a pixel independent: of a ratio of
 /// sums, to first order (Cochran, "Sampling Techniques", 1977, section 6.4), from the scatter of
-/// the samples within the pixels that they lie in, the number of samples in each being fixed.
-/// Infinite where a pixel has fewer than two. Per channel for RGB and alpha; for the other formats
-/// the bound that holds however R, G and B are correlated.
+/// the samples that reach the pixel. Infinite where fewer than two lie in it. Per channel for RGB
+/// and alpha; for the other formats the bound that holds however R, G and B are correlated.
 Image film_variance(const Film &film, PixelFormat format);
 
 } // namespace clrender

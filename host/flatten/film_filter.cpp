@@ -164,22 +164,4 @@ std::vector<clr_real> tabulate_filter(const ReconstructionFilter &filter) {
     return table;
 }
 
-std::vector<double> filter_spread(std::span<const clr_real> table, double radius, int border) {
-    // The device's step function, at places so close that no step is missed.
-    constexpr int places = 4096;
-    const double levels = CLR_FILTER_LEVELS / radius;
-    std::vector<double> spread;
-    for (int offset = -border; offset <= border; ++offset) {
-        double sum = 0;
-        for (int i = 0; i < places; ++i) {
-            const double distance = std::abs(offset + 0.5 - (i + 0.5) / places);
-            const int level = std::min(static_cast<int>(distance * levels), CLR_FILTER_LEVELS);
-            const double value = table[static_cast<std::size_t>(CLR_FILTER_VALUES + level)];
-            sum += value * value;
-        }
-        spread.push_back(sum / places);
-    }
-    return spread;
-}
-
 } // namespace clrender::inline CLR_PRECISION

@@ -4,7 +4,6 @@
 #include "scene/scene.h"
 #include "shared/shared_types.h"
 
-#include <span>
 #include <vector>
 
 namespace clrender::inline CLR_PRECISION {
@@ -18,10 +17,5 @@ double filter_radius(const ReconstructionFilter &filter);
 
 /// The table that kernels/shared/film_filter.h lays out: CLR_FILTER_SIZE numbers.
 std::vector<clr_real> tabulate_filter(const ReconstructionFilter &filter);
-
-/// What a sample adds to the variance of the pixels up to `border` around its own, along one axis
-/// (Film::spread): the mean of the squared filter over the sample's places in its pixel, from the
-/// table as the device reads it.
-std::vector<double> filter_spread(std::span<const clr_real> table, double radius, int border);
 
 } // namespace clrender::inline CLR_PRECISION

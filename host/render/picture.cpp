@@ -53,10 +53,9 @@ void copy_pixels(Image &part, std::size_t part_row, std::size_t first, std::size
 
 } // namespace
 
-Picture::Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent,
-                 std::vector<double> spread)
+Picture::Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent)
     : image(black(tiles, channels_of(format))), tiles_(tiles), format_(format), exponent_(exponent),
-      spread_(std::move(spread)), rows_(tiles.rows()) {
+      rows_(tiles.rows()) {
     if (layers.variance)
         variance = black(tiles, channels_of(format));
     if (layers.samples)
@@ -90,7 +89,6 @@ void Picture::take(const DeviceFilm &film, const Band &band, const LaunchPlan &p
             part.width = static_cast<int>(tiles_.width);
             part.height = static_cast<int>(to - from);
             part.exponent = exponent_;
-            part.spread = spread_;
             const auto at = [&](std::size_t r) {
                 return pixels.begin() + static_cast<std::ptrdiff_t>((r - film_row) * tiles_.width);
             };

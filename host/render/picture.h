@@ -17,10 +17,8 @@ public:
         bool variance = false, samples = false;
     };
 
-    /// Black, in the channels of `format`; with the layers that are wanted. `exponent` and
-    /// `spread`: as Film.
-    Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent,
-            std::vector<double> spread);
+    /// Black, in the channels of `format`; with the layers that are wanted. `exponent`: as Film.
+    Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent);
 
     /// Takes over the band that is in `film`, as far as the launches of `plan` have got: the pixels
     /// of tiles without samples stay as they are, and those of the band above that this one reaches
@@ -65,7 +63,6 @@ private:
     PictureTiles tiles_;
     PixelFormat format_;
     int exponent_;
-    std::vector<double> spread_;
     std::vector<Tiles> rows_; ///< of tiles
 };
 

@@ -1,7 +1,6 @@
 #include "render_at_precision.h"
 
 #include "film/film_blocks.h"
-#include "flatten/film_filter.h"
 #include "flatten/flat_scene.h"
 #include "log.h"
 #include "path_tracer.h"
@@ -112,16 +111,11 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     stats_.seconds_build = watch_.lap("build");
     tracer_->compile(stats_);
     stats_.seconds_compile = watch_.lap("compile");
-    // Before the upload, which frees the table.
-    std::vector<double> spread{1.0};
-    if (flat_.config.BORDER > 0)
-        spread =
-            filter_spread(flat_.filter, double{flat_.frame.filter_radius}, flat_.config.BORDER);
     tracer_->upload(stats_);
     stats_.seconds_upload = watch_.lap("upload");
     picture_ = std::make_unique<Picture>(
         tiles_of(flat_), format, Picture::Layers{options_.with_variance, options_.with_samples},
-        flat_.frame.film_exponent, std::move(spread));
+        flat_.frame.film_exponent);
 }
 
 /// What the render decides of the kernel and of the frame.

@@ -8,9 +8,9 @@
 
 CLR_SHARED_BEGIN
 
-/* Sums over the samples of a pixel of a control tile, exact as FilmPixel's and in its units:
-   `difference` of the distances from the value of each block's first sample, those of the second
-   rendering taken off; and the `scatter` of both. */
+/* Sums over those samples of a control tile that reach a pixel of it, exact as FilmPixel's and in
+   its units: `difference` of w times the distance from the value of each block's first sample,
+   those of the second rendering taken off; and the `scatter` of both. */
 #define CLR_DIFFERENCE_WORDS 4
 #define CLR_DIFFERENCE_LSB (-76)
 typedef struct {

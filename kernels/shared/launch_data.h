@@ -78,14 +78,12 @@ CLR_SHARED_BEGIN
 
    `colour`: of w R, w G, w B, w alpha over the samples that reach the pixel, w being the filter's
    weight. The lowest bit is worth 2^CLR_COLOUR_LSB units (FrameData::film_exponent; of alpha: 1).
-   `scatter`: over the samples that lie in the pixel, n in a block: of n / (n - 1) times the squared
-   distances of R, G, B, alpha from their mean in the block, so that the quotient by `samples` is
-   the variance of one sample. Where the filter is sampled (FILTER 1), the distances are those of
-   the w R, w G, w B, w alpha from the w times the value of the block's first sample, from their
-   mean. The lowest bit is worth 2^CLR_SCATTER_LSB squared units.
-   `weight`: of w, of 64 bits, the lowest worth 2^CLR_WEIGHT_LSB.
-   `samples`: that lie in the pixel. `clamped`: blocks with a value beyond CLR_FILM_LIMIT (in units
-   of the highest word), which is put in its place: 2^28 blocks of that size do not overflow. */
+   `scatter`: of w^2 times the squared distances of R, G, B, alpha from the weighted mean of a
+   block, times n / (n - 1) where n samples count (Kish: (sum of w)^2 / sum of w^2). The lowest bit
+   is worth 2^CLR_SCATTER_LSB squared units. `weight`: of w, of 64 bits, the lowest worth
+   2^CLR_WEIGHT_LSB. `samples`: that lie in the pixel. `clamped`: blocks with a value beyond
+   CLR_FILM_LIMIT (in units of the highest word), which is put in its place: 2^28 blocks of that
+   size do not overflow. */
 #define CLR_COLOUR_WORDS 4
 #define CLR_COLOUR_LSB (-76)
 #define CLR_SCATTER_WORDS 5

@@ -3,8 +3,6 @@
 #include "film/film.h"
 #include "film/film_blocks.h"
 #include "film/film_sums.h"
-#include "flatten/film_filter.h"
-#include "shared/film_filter.h"
 
 #include <catch2/catch.hpp>
 
@@ -142,25 +140,4 @@ TEST_CASE("mean and variance of a pixel follow from its sums") {
     }
     film.pixels[1].samples = 1;
     CHECK(std::isinf(film_variance(film, PixelFormat::rgb).f32[3]));
-}
-
-TEST_CASE("splatted samples bring their variance to the pixels around them") {
-    // A single noisy pixel, and the tent filter, whose square is known: of a sample at distance x
-    // from a pixel's centre (1 - x)^2, x uniform in [0, 1/2], or from 1/2 to 1 for the neighbours.
-    ReconstructionFilter filter;
-    filter.kind = FilterKind::tent;
-    const std::vector<double> spread = filter_spread(tabulate_filter(filter), 1, 1);
-    REQUIRE(spread.size() == 3);
-    // The device takes the filter in steps, at the inner end of each.
-    CHECK(spread[1] == Approx(2 * (1 - 0.125) / 3).epsilon(0.05));
-    CHECK(spread[0] == Approx(0.125 / 3).epsilon(0.1));
-    CHECK(spread[0] == spread[2]);
-    Film film;
-    film.width = film.height = 3;
-    film.spread = spread;
-    film.pixels.assign(9, grey(1, 0, 100));
-    film.pixels[4] = grey(1, 7, 100);
-    const Image variance = film_variance(film, PixelFormat::luminance_alpha);
-    for (std::size_t i = 0; i < 9; ++i)
-        CHECK(double{variance.f32[2 * i + 1]} == Approx(0.07 * spread[i % 3] * spread[i / 3]));
 }
