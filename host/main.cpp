@@ -227,7 +227,8 @@ int run(const cli::Options &options) {
     case cli::Command::list_devices:
         return show_devices();
     case cli::Command::compare:
-        return compare_command(options.compare.a, options.compare.b, options.compare.tolerance);
+        return compare_command(options.compare.a, options.compare.b, options.compare.tolerance,
+                               options.compare.flip);
     case cli::Command::test:
         return test_command(options);
     case cli::Command::self_test:

@@ -377,6 +377,12 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
     app.add_flag("--preview", options.preview)->group("");
 }
 
+std::string check_png(const std::string &path) {
+    if (fs::path(path).extension() != ".png")
+        return fmt::format("'{}' does not end in .png", path);
+    return why_not_writable(path);
+}
+
 CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {
     CLI::App *command = app.add_subcommand(
         "compare", "Prints how far picture A is from picture B: mean squared error, relMSE,\n"
@@ -389,6 +395,11 @@ CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {
                      "The largest relMSE that counts as equal (default: 0)")
         ->type_name("X")
         ->check(number(0, 1e9));
+    command
+        ->add_option("--flip", compare.flip,
+                     "Writes where the eye sees a difference (FLIP), and prints its mean")
+        ->type_name("FILE.png")
+        ->check(CLI::Validator(check_png, ""));
     return command;
 }
 
@@ -402,12 +413,6 @@ std::optional<double> parse_effect(const std::string &text) {
 
 std::string check_effect(const std::string &text) {
     return parse_effect(text) ? "" : fmt::format("'{}' is not a share such as 1% or 0.01", text);
-}
-
-std::string check_marked(const std::string &path) {
-    if (fs::path(path).extension() != ".png")
-        return fmt::format("'{}' does not end in .png", path);
-    return why_not_writable(path);
 }
 
 CLI::App *add_test(CLI::App &app, Options &options, RawOptions &raw) {
@@ -434,7 +439,7 @@ CLI::App *add_test(CLI::App &app, Options &options, RawOptions &raw) {
                      "Shows where the pictures differ, if they do (default: the reference's\n"
                      "name with _differs.png, in the current folder)")
         ->type_name("FILE.png")
-        ->check(CLI::Validator(check_marked, ""));
+        ->check(CLI::Validator(check_png, ""));
     return command;
 }
 

@@ -25,6 +25,7 @@ struct CompareOptions {
     std::string a;
     std::string b;
     double tolerance = 0; ///< the largest relMSE that counts as equal
+    std::string flip;     ///< PNG file for the FLIP map, or empty
 };
 
 /// `clrender test SCENE`, beside the options of a render.

@@ -61,25 +61,56 @@ void Family::merge() {
 double Family::spread(const Image &variance) const {
     const std::vector<double> pixels = windows_.means(variance, channels_);
     double measured = 0, expected = 0;
+    const std::vector<double> variances = batch_variances();
     for (std::size_t i = 0; i < reference_.size(); ++i) {
-        measured += square(find(i, last_samples_, 0).error);
+        measured += variances[i];
         expected += pixels[i] / windows_.pixels();
     }
     return expected > 0 ? std::max(measured / expected, 1.0) : 1;
 }
 
-Family::Finding Family::find(std::size_t i, int samples, double spread) const {
-    double sum = 0, squares = 0;
+double Family::difference(std::size_t i) const {
+    double sum = 0;
     for (const auto &batch : batches_)
         sum += double{batch[i]};
-    const auto count = static_cast<double>(batches_.size());
-    const double difference = sum / count;
-    for (const auto &batch : batches_)
-        squares += square(double{batch[i]} - difference);
+    return sum / static_cast<double>(batches_.size());
+}
 
+std::vector<double> Family::batch_variances() const {
+    const auto count = static_cast<double>(batches_.size());
+    std::vector<double> variances(reference_.size());
+    for (std::size_t i = 0; i < variances.size(); ++i) {
+        const double mean = difference(i);
+        for (const auto &batch : batches_)
+            variances[i] += square(double{batch[i]} - mean);
+        variances[i] /= count * (count - 1);
+    }
+    return variances;
+}
+
+double Family::variance_around(const std::vector<double> &variances, std::size_t i) const {
+    // Windows overlap by half: every second one.
+    constexpr std::size_t reach = 4, step = 2;
+    const auto channels = static_cast<std::size_t>(channels_);
+    const std::size_t columns = windows_.columns(), rows = windows_.count() / columns;
+    const std::size_t column = i / channels % columns, row = i / channels / columns;
+    double sum = 0, count = 0;
+    for (std::size_t y = row + reach + 1; y-- > row - std::min(row, reach);)
+        for (std::size_t x = column + reach + 1; x-- > column - std::min(column, reach);) {
+            const bool is_taken =
+                y < rows && x < columns && (y + row) % step == 0 && (x + column) % step == 0;
+            if (is_taken) {
+                sum += variances[(y * columns + x) * channels + i % channels];
+                ++count;
+            }
+        }
+    return sum / count;
+}
+
+Family::Finding Family::find(std::size_t i, double own, int samples, double spread) const {
+    const double difference = this->difference(i);
     // Each picture's error is at least what the other one's samples tell: rare bright samples may
     // have come to only one of them.
-    const double own = squares / (count * (count - 1));
     const double layer = reference_variance_[i] * spread;
     const double ratio = reference_samples_ > 0 ? samples / reference_samples_ : 0;
     const double own_variance = ratio > 0 ? std::max(own, layer / ratio) : own;
@@ -107,20 +138,25 @@ Family::Look Family::look(double alpha, int samples, double spread) const {
     const double one = -std::expm1(std::log1p(-alpha) / static_cast<double>(reference_.size()));
     look.critical = t_critical(one, batches() - 1);
     look.excluded = true;
+    const std::vector<double> variances = batch_variances();
     for (std::size_t i = 0; i < reference_.size(); ++i) {
-        const Finding finding = find(i, samples, spread);
-        if (std::abs(finding.t) > std::abs(look.worst.t))
-            look.worst = finding;
-        if (!(std::abs(finding.t) <= look.critical))
-            look.findings.push_back(finding);
+        Finding finding = find(i, variances[i], samples, spread);
+        const double error = std::hypot(finding.error, finding.reference_error);
         const double mean = picture_mean_[i % static_cast<std::size_t>(channels_)];
         const double limit = effect_ * std::max(std::abs(reference_[i]), dark * std::abs(mean));
-        const double error = std::hypot(finding.error, finding.reference_error);
         look.excluded =
             look.excluded &&
             std::abs(finding.value - finding.reference_value) + look.critical * error <= limit;
         look.hopeless = look.hopeless || (look.critical * finding.reference_error > limit &&
                                           finding.reference_error > 2 * finding.error);
+
+        if (finding.t < 0)
+            finding =
+                find(i, std::max(variances[i], variance_around(variances, i)), samples, spread);
+        if (std::abs(finding.t) > std::abs(look.worst.t))
+            look.worst = finding;
+        if (!(std::abs(finding.t) <= look.critical))
+            look.findings.push_back(finding);
     }
     return look;
 }

@@ -20,7 +20,9 @@ inline constexpr int least_batches = 8, most_batches = 64;
 /// Windows of one size in all colour channels, and the batches of samples seen there. The error of
 /// a window's mean comes from the scatter of its batches: no assumption is made of how pixels
 /// correlate. Consecutive batches of Sobol' points repel each other, so that it is rather too
-/// large.
+/// large. Where rare bright samples make the light of a window and none has come yet, its batches
+/// scatter too little: a window that is darker than the reference has the variance of the windows
+/// around it at least.
 class Family {
 public:
     /// `effect`: the relative difference to be excluded.
@@ -59,7 +61,14 @@ public:
     [[nodiscard]] const Windows &windows() const { return windows_; }
 
 private:
-    [[nodiscard]] Finding find(std::size_t i, int samples, double spread) const;
+    /// The mean of the batches.
+    [[nodiscard]] double difference(std::size_t i) const;
+    /// The squared error of each window and channel, from the scatter of the batches.
+    [[nodiscard]] std::vector<double> batch_variances() const;
+    /// The mean of `variances` around a window and channel.
+    [[nodiscard]] double variance_around(const std::vector<double> &variances, std::size_t i) const;
+    /// `variance`: the squared error from the batches.
+    [[nodiscard]] Finding find(std::size_t i, double variance, int samples, double spread) const;
 
     std::string name_;
     Windows windows_;

@@ -18,6 +18,8 @@ public:
     [[nodiscard]] std::size_t count() const { return left_.size() * top_.size(); }
     [[nodiscard]] int left(std::size_t window) const { return left_[window % left_.size()]; }
     [[nodiscard]] int top(std::size_t window) const { return top_[window / left_.size()]; }
+    /// Windows in a row.
+    [[nodiscard]] std::size_t columns() const { return left_.size(); }
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] double pixels() const { return static_cast<double>(width_) * height_; }

@@ -146,3 +146,31 @@ TEST_CASE("Noise alone is the same, and a few pixels that differ are found where
         CHECK(region.worst.value / region.worst.reference_value == Approx(0.95).margin(0.06));
     }
 }
+
+TEST_CASE("Light of rare samples that has not come yet is not missing") {
+    // One sample of 4000 brings all of the light; the reference is exact.
+    constexpr int samples = 2048, seeds = 20;
+    constexpr double value = 0.5, chance = 1.0 / 4000;
+    const Image truth = image_of(3, static_cast<float>(value));
+    Reference reference;
+    reference.image = truth;
+    int alarms = 0;
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+        std::mt19937 random(seed);
+        std::vector<double> sums(static_cast<std::size_t>(width * height), 0.0);
+        PictureTest test(reference, 0.01);
+        for (int before = 0; test.next_samples() <= samples;) {
+            std::poisson_distribution<int> events(chance * (test.next_samples() - before));
+            before = test.next_samples();
+            Image image = truth;
+            for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
+                sums[pixel] += events(random) * value / chance;
+                for (std::size_t c = 0; c < 3; ++c)
+                    image.f32[3 * pixel + c] = static_cast<float>(sums[pixel] / before);
+            }
+            test.add(image);
+        }
+        alarms += test.look(image_of(3, 1)).differs() ? 1 : 0;
+    }
+    CHECK(alarms == 0);
+}
