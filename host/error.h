@@ -53,6 +53,12 @@ public:
         : std::runtime_error(as_one_line(path + ": " + what)) {}
 };
 
+/// The system has not the memory that the run would need: exit code 5.
+class MemoryError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
 /// No usable device, or the device failed: exit code 3.
 class DeviceError : public std::runtime_error {
 public:

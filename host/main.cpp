@@ -23,9 +23,11 @@
 #include <cstdio>
 #include <exception>
 #include <fmt/core.h>
+#include <future>
 #include <new>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 using namespace clrender;
 
@@ -80,7 +82,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.tile = options.tile;
     r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
-    r.with_variance = !options.stats.empty() || options.layers.count("variance") != 0;
+    r.with_variance = options.layers.count("variance") != 0;
     r.with_samples = options.layers.count("samples") != 0;
     r.profile = options.profile ? &profile : nullptr;
     r.band_rows = options.band_rows;
@@ -113,7 +115,9 @@ void check_outputs(const cli::Options &options, const Scene &scene) {
     }
 }
 
-/// Writes the pictures; none is left out because another cannot be written.
+/// Writes the pictures; none is left out because another cannot be written. Those of up to 2^24
+/// pixels are encoded side by side, larger ones one after the other, so that no two lie in memory
+/// as bytes. A stopped render is written fast.
 void write_pictures(const cli::Options &options, const std::string &scene,
                     const RenderResult &result, cli::Outputs &outputs) {
     const auto about = metadata(options, scene, result.stats);
@@ -122,9 +126,15 @@ void write_pictures(const cli::Options &options, const std::string &scene,
         layers.push_back({"variance", &result.variance});
     if (options.layers.count("samples") != 0)
         layers.push_back({"samples", &result.samples});
+    const bool is_large = std::int64_t{result.image.width} * result.image.height > 1 << 24;
+    std::vector<std::future<void>> writes;
     for (const std::string &path : options.outputs)
-        outputs.attempt(path,
-                        [&] { write_image(path, result.image, options.exposure, about, layers); });
+        writes.push_back(std::async(is_large ? std::launch::deferred : std::launch::async, [&,
+                                                                                            path] {
+            write_image(path, result.image, options.exposure, about, layers, result.interrupted);
+        }));
+    for (std::size_t i = 0; i < writes.size(); ++i)
+        outputs.attempt(options.outputs[i], [&] { writes[i].get(); });
     if (outputs.written().empty())
         outputs.rescue(scene, result.image, about);
 }
@@ -148,16 +158,22 @@ int render_command(const cli::Options &options) {
     if (options.check) {
         if (!options.stats.empty() || options.profile)
             log::warn("--check renders nothing: --stats and --profile are left out");
-        log::info(fmt::format(
-            "{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples, {:.2f} MiB on the device",
-            options.scene, scene.shapes.size(), scene.emitters.size(), scene.film.crop_width,
-            scene.film.crop_height, scene.sample_count,
-            static_cast<double>(device_bytes_needed(scene, how)) / (1 << 20)));
+        const std::string what =
+            fmt::format("{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples", options.scene,
+                        scene.shapes.size(), scene.emitters.size(), scene.film.crop_width,
+                        scene.film.crop_height, scene.sample_count);
+        const MemoryNeed need = memory_needed(std::move(scene), how);
+        log::info(fmt::format("{}, {:.2f} MiB on the device, {:.0f} MiB in all", what,
+                              static_cast<double>(need.device) / (1 << 20),
+                              static_cast<double>(need.process) / (1 << 20)));
         return 0;
     }
 
     const std::string name = scene.name;
-    const RenderResult result = render_scene(std::move(scene), how);
+    RenderResult result = render_scene(std::move(scene), how);
+    // Beside a large picture it would be most of the memory.
+    if (options.layers.count("variance") == 0)
+        result.variance = Image();
     progress.finish();
 
     activity = "writing the pictures";
@@ -256,6 +272,9 @@ int explain_exception() {
         log::error(
             fmt::format("OpenCL failed while {}: {} returned {}", activity, e.what(), e.err()));
         return cli::exit_device;
+    } catch (const MemoryError &e) {
+        log::error(e.what());
+        return cli::exit_memory;
     } catch (const std::bad_alloc &) {
         log::error("out of memory while " + activity);
         return cli::exit_memory;

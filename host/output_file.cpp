@@ -21,83 +21,100 @@ std::string folder_of(const std::string &path) {
     return folder.empty() ? "." : folder;
 }
 
-/// A new file in the folder of `path` that takes its place by commit(), or else vanishes. Its own
-/// name is short, so that it can be made wherever `path` can.
-class TemporaryFile {
-public:
-    explicit TemporaryFile(const std::string &path) : path_(path) {
-        // The name of a device, a FIFO or a folder must not be replaced by a picture.
-        struct stat status = {};
-        if (::stat(path.c_str(), &status) == 0) {
-            if (!S_ISREG(status.st_mode))
-                throw OutputError(path_, "is not a regular file, expected a file to write to");
-            if (::access(path.c_str(), W_OK) != 0)
-                fail();
-        } else if (errno != ENOENT) {
-            fail();
-        }
-        static std::atomic<int> counter{0};
-        temporary_ = folder_of(path) + "/.clr" + std::to_string(::getpid()) + "-" +
-                     std::to_string(counter++);
-        constexpr mode_t mode = 0666;
-        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-        if (descriptor_ < 0)
-            fail();
-    }
-    ~TemporaryFile() {
-        if (descriptor_ >= 0)
-            ::close(descriptor_);
-        if (!committed_)
-            ::unlink(temporary_.c_str());
-    }
-    TemporaryFile(const TemporaryFile &) = delete;
-    TemporaryFile &operator=(const TemporaryFile &) = delete;
-
-    void write(std::string_view bytes) {
-        while (!bytes.empty()) {
-            const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-            if (written < 0 && errno != EINTR)
-                fail();
-            bytes.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
-        }
-    }
-
-    /// The data are on the disk before the name is theirs.
-    void commit() {
-        if (::fsync(descriptor_) != 0)
-            fail();
-        const int closed = ::close(descriptor_);
-        descriptor_ = -1;
-        if (closed != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0)
-            fail();
-        committed_ = true;
-        sync_folder();
-    }
-
-private:
-    /// Puts the new name on the disk too. Where a file system cannot do that, the file is written
-    /// all the same.
-    void sync_folder() const {
-        const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (folder < 0)
-            return;
-        ::fsync(folder);
-        ::close(folder);
-    }
-
-    [[noreturn]] void fail() const {
-        throw OutputError(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
-    }
-
-    std::string path_, temporary_;
-    int descriptor_ = -1;
-    bool committed_ = false;
-};
+/// Small pieces are put together to so many bytes.
+constexpr std::size_t buffer_bytes = std::size_t(1) << 18;
 
 } // namespace
 
+OutputFile::OutputFile(const std::string &path) : path_(path) {
+    // The name of a device, a FIFO or a folder must not be replaced by a picture.
+    struct stat status = {};
+    if (::stat(path.c_str(), &status) == 0) {
+        if (!S_ISREG(status.st_mode))
+            throw OutputError(path_, "is not a regular file, expected a file to write to");
+        if (::access(path.c_str(), W_OK) != 0)
+            fail();
+    } else if (errno != ENOENT) {
+        fail();
+    }
+    static std::atomic<int> counter{0};
+    temporary_ =
+        folder_of(path) + "/.clr" + std::to_string(::getpid()) + "-" + std::to_string(counter++);
+    constexpr mode_t mode = 0666;
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    if (descriptor_ < 0)
+        fail();
+}
+
+OutputFile::~OutputFile() {
+    if (descriptor_ >= 0)
+        ::close(descriptor_);
+    if (!committed_)
+        ::unlink(temporary_.c_str());
+}
+
+void OutputFile::write(std::string_view bytes) {
+    pending_ += bytes;
+    if (pending_.size() >= buffer_bytes)
+        flush();
+}
+
+void OutputFile::seek(std::uint64_t position) {
+    flush();
+    if (::lseek(descriptor_, static_cast<off_t>(position), SEEK_SET) < 0)
+        fail();
+    written_ = position;
+}
+
+void OutputFile::flush() {
+    std::string_view bytes = pending_;
+    while (!bytes.empty()) {
+        const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+        if (count < 0 && errno != EINTR)
+            fail();
+        bytes.remove_prefix(count > 0 ? static_cast<std::size_t>(count) : 0);
+    }
+    written_ += pending_.size();
+    pending_.clear();
+}
+
+void OutputFile::commit() {
+    check();
+    flush();
+    if (::fsync(descriptor_) != 0)
+        fail();
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0)
+        fail();
+    committed_ = true;
+    sync_folder();
+}
+
+/// Puts the new name on the disk too. Where a file system cannot do that, the file is written all
+/// the same.
+void OutputFile::sync_folder() const {
+    const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    ::fsync(folder);
+    ::close(folder);
+}
+
+void OutputFile::check() const {
+    if (failure_ != 0)
+        throw OutputError(path_,
+                          std::string("cannot be written (") + std::strerror(failure_) + ")");
+}
+
+void OutputFile::fail() {
+    failure_ = errno;
+    check();
+    throw OutputError(path_, "cannot be written");
+}
+
 void write_output_file(const std::string &path, std::string_view bytes) {
-    TemporaryFile file(path);
+    OutputFile file(path);
     file.write(bytes);
     file.commit();
 }
@@ -111,7 +128,7 @@ std::string why_not_writable(const std::string &path) {
     if (!std::filesystem::is_directory(folder_of(path), ignored))
         return "there is no folder '" + folder_of(path) + "'";
     try {
-        const TemporaryFile probe(path);
+        const OutputFile probe(path);
     } catch (const OutputError &error) {
         return error.what();
     }

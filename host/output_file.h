@@ -1,13 +1,46 @@
 #pragma once
 /// Files that the program leaves behind. A failure leaves an older file as it was.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace clrender {
 
-/// Writes `bytes` to a temporary file in the folder of `path`, waits until they are on the disk,
-/// and gives them the name `path`. Throws OutputError that names `path` and the reason.
+/// A new file in the folder of `path` that takes its place by commit(), or else vanishes: pictures
+/// go to it piece by piece, as they are encoded. All members throw OutputError that names `path`
+/// and the reason.
+class OutputFile {
+public:
+    explicit OutputFile(const std::string &path);
+    ~OutputFile();
+    OutputFile(const OutputFile &) = delete;
+    OutputFile &operator=(const OutputFile &) = delete;
+
+    /// Adds bytes at the position, and moves it behind them.
+    void write(std::string_view bytes);
+    [[nodiscard]] std::uint64_t position() const { return written_ + pending_.size(); }
+    void seek(std::uint64_t position);
+
+    /// Throws if something has failed before: libraries may keep to themselves what they caught.
+    void check() const;
+    /// Waits until all bytes are on the disk, and gives them the name `path`.
+    void commit();
+
+private:
+    void flush();
+    void sync_folder() const;
+    [[noreturn]] void fail();
+
+    std::string path_, temporary_; ///< the latter is short: it can be made wherever `path` can
+    std::string pending_;          ///< bytes that are not written yet
+    std::uint64_t written_ = 0;    ///< the position before them
+    int descriptor_ = -1;
+    int failure_ = 0; ///< errno of the first failure
+    bool committed_ = false;
+};
+
+/// Writes `bytes` to an OutputFile and commits it.
 void write_output_file(const std::string &path, std::string_view bytes);
 
 /// Why `path` cannot be written, or "". Finds out by making a temporary file in its folder, which

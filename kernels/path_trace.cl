@@ -13,6 +13,7 @@
 #include "environment.clh"
 #include "film.clh"
 #include "light.clh"
+#include "paths.clh"
 #include "profile.clh"
 #include "sampler.clh"
 #include "scene.clh"
@@ -34,193 +35,6 @@
    their paths are: so the wait grows with the steps of the busy lanes. */
 CLR_INLINE int refill_is_due(int idle_steps, int busy_steps) {
     return idle_steps >= LANES + busy_steps / 3;
-}
-
-/* The state of the paths. `o` lies on primitive `self` (-1: the camera); `prev_pdf` is the density
-   of the last direction, infinite where the last vertex was specular or the camera, divided by the
-   number of lights that were sampled there, and `prev_n` the normal there; `first` marks paths that
-   have met nothing diffuse yet; `eta2` undoes the compression of radiance in roulette; `radiance`
-   is what the sample has gathered. */
-typedef struct {
-    mask_l alive, first;
-    vec3 o, d;
-    int_l self;
-    real t_max;
-    vec3 throughput, radiance;
-    real alpha;
-    real prev_pdf;
-    vec3 prev_n;
-    real eta2;
-    int_l depth;
-    Sampler sampler;
-    int_l pixel; /* of the tile, row by row; valid while pending: alive, or not yet added up */
-    mask_l pending;
-    real weight; /* the camera ray's */
-    real dx, dy;
-#if HAS_FAR_CAMERA
-    real ahead; /* CameraRay::ahead of a camera ray that is under way to `start`, else 0 */
-    vec3 start;
-    real start_t_max;
-#endif
-#if INTEGRATOR == 1
-    real skipped; /* CameraRay::skipped */
-#endif
-    uint rays; /* of all lanes together */
-} Paths;
-
-/* A tile, cut off where the picture ends, and what is left to do of its current block. */
-typedef struct {
-    int x, y, width, height;
-    int next_x, next_y;
-    uint next_sample;
-    uint first_sample, end_sample;
-    uint seed;
-} Work;
-
-CLR_INLINE int work_left(const Work *work) {
-    return work->next_y < work->height;
-}
-
-/* `count` samples of the current pixel are taken; there are as many. */
-CLR_INLINE void work_advance(Work *work, uint count) {
-    work->next_sample += count;
-    if (work->next_sample < work->end_sample)
-        return;
-    work->next_sample = work->first_sample;
-    if (++work->next_x == work->width) {
-        work->next_x = 0;
-        ++work->next_y;
-    }
-}
-
-/* Idle lanes take the next samples in turn; lanes that find none stay idle. */
-CLR_INLINE void paths_refill(const SceneData *scene, Paths *p, Work *work) {
-    __global const FrameData *f = scene->frame;
-    mask_l idle = ~p->alive;
-    mask_l fresh = idle;
-    int_l sample, px, py;
-    const int wanted = count_lanes(idle);
-    if (work->next_sample + (uint)wanted <= work->end_sample) {
-        /* All from one pixel. */
-        sample = rank_of_lanes(idle) + (int)work->next_sample;
-        px = int_of(work->next_x);
-        py = int_of(work->next_y);
-        work_advance(work, (uint)wanted);
-    } else {
-        int lanes[LANES], samples[LANES], columns[LANES], rows[LANES];
-        store_int(idle, lanes);
-        for (int i = 0; i < LANES; ++i) {
-            samples[i] = (int)work->next_sample;
-            columns[i] = work->next_x;
-            rows[i] = work->next_y;
-            lanes[i] = lanes[i] && work_left(work) ? -1 : 0;
-            if (lanes[i])
-                work_advance(work, 1u);
-        }
-        fresh = load_int(lanes);
-        sample = load_int(samples);
-        px = load_int(columns);
-        py = load_int(rows);
-    }
-    PROFILE_ADD(scene->counts, PROFILE_CAMERA_RAYS, count_lanes(fresh));
-    p->pixel = ipick(fresh, py * TILE + px, p->pixel);
-    px += work->x;
-    py += work->y;
-    uint_l linear = as_uint_l(py * (int)f->width + px);
-    Sampler sampler = sampler_init(work->seed, linear, as_uint_l(sample));
-    CameraRay ray = camera_ray(scene, px, py, sampler);
-    sampler_advance(&sampler, CAMERA_DIMENSIONS);
-#if HAS_CLIP || INTEGRATOR == 1
-    ray.o = v3_mad(ray.d, ray.t_near, ray.o);
-    ray.t_far -= ray.t_near;
-#endif
-#if HAS_FAR_CAMERA
-    p->ahead = pick(fresh, ray.ahead, p->ahead);
-    p->start = v3_pick(fresh, ray.o, p->start);
-    p->start_t_max = pick(fresh, ray.t_far, p->start_t_max);
-    ray.o = v3_mad(ray.d, -ray.ahead, ray.o);
-    ray.t_far = ray.ahead - camera_next_leg(ray.ahead);
-#endif
-    p->alive |= fresh;
-    p->first |= fresh;
-    p->pending |= fresh;
-    p->o = v3_pick(fresh, ray.o, p->o);
-    p->d = v3_pick(fresh, ray.d, p->d);
-    p->self = ipick(fresh, int_of(-1), p->self);
-    p->t_max = pick(fresh, ray.t_far, p->t_max);
-    p->throughput = v3_pick(fresh, v3(ray.weight, ray.weight, ray.weight), p->throughput);
-#if FILTER == 1
-    p->weight = pick(fresh, ray.weight, p->weight);
-#elif FILTER == 3
-    p->dx = pick(fresh, ray.dx, p->dx);
-    p->dy = pick(fresh, ray.dy, p->dy);
-#endif
-    p->radiance = v3_pick(fresh, v3_of(0.0f, 0.0f, 0.0f), p->radiance);
-#if INTEGRATOR == 1
-    p->skipped = pick(fresh, ray.skipped, p->skipped);
-#endif
-#if HAS_ALPHA
-    p->alpha = pick(fresh, ray.weight * f->env_alpha, p->alpha);
-#endif
-    p->prev_pdf = pick(fresh, real_of(INFINITY), p->prev_pdf);
-    p->eta2 = pick(fresh, real_of(1.0f), p->eta2);
-    p->depth = ipick(fresh, int_of(0), p->depth);
-    p->sampler = sampler_pick(fresh, sampler, p->sampler);
-}
-
-CLR_INLINE void paths_count_nonfinite(const SceneData *scene, const Work *work, mask_l bad,
-                                      const int *pixel, ItemCounters *counters) {
-    int lanes[LANES];
-    store_int(bad, lanes);
-    for_each_lane(i, lanes) {
-        if (counters->nonfinite == 0)
-            counters->first_nonfinite = (uint)(work->y + pixel[i] / TILE) * scene->frame->width +
-                                        (uint)(work->x + pixel[i] % TILE);
-        counters->nonfinite = add_sat(counters->nonfinite, 1u);
-    }
-}
-
-/* Adds what the finished paths have gathered to the block; a path that is not finite is counted,
-   and counts as black. */
-CLR_INLINE void paths_finish(const SceneData *scene, Paths *p, const Work *work, BlockSums *block,
-                             ItemCounters *counters) {
-    mask_l finished = p->pending & ~p->alive;
-    mask_l finite = is_finite(p->radiance.x) & is_finite(p->radiance.y) & is_finite(p->radiance.z);
-    vec3 black = v3_of(0.0f, 0.0f, 0.0f);
-    vec3 radiance = v3_pick(finite, p->radiance, black);
-    int lanes[LANES], pixel[LANES];
-    store_int(finished, lanes);
-    store_int(p->pixel, pixel);
-    if (any_lane(finished & ~finite))
-        paths_count_nonfinite(scene, work, finished & ~finite, pixel, counters);
-    if (!any_lane(finished))
-        return;
-#if FILTER != 3
-    /* Mostly all lanes have been at one pixel. */
-    int first = 0;
-    while (!lanes[first])
-        ++first;
-    if (!any_lane(finished & ~ieq(p->pixel, int_of(pixel[first])))) {
-        block_add_lanes(scene, block, pixel[first] % TILE, pixel[first] / TILE, finished, first,
-                        v3_pick(finished, radiance, black), pick(finished, p->alpha, real_of(0.0f)),
-                        pick(finished, p->weight, real_of(0.0f)));
-        p->pending &= p->alive;
-        return;
-    }
-#endif
-    float r[LANES], g[LANES], b[LANES], alpha[LANES], weight[LANES], dx[LANES], dy[LANES];
-    store_float(radiance.x, r);
-    store_float(radiance.y, g);
-    store_float(radiance.z, b);
-    store_float(p->alpha, alpha);
-    store_float(p->weight, weight);
-    store_float(p->dx, dx);
-    store_float(p->dy, dy);
-    for_each_lane(i, lanes) {
-        FilmSample s = {r[i], g[i], b[i], alpha[i], weight[i], dx[i], dy[i]};
-        block_add_sample(scene, block, pixel[i] % TILE, pixel[i] / TILE, s);
-    }
-    p->pending &= p->alive;
 }
 
 CLR_INLINE void paths_add_radiance(Paths *p, vec3 radiance, real weight, mask_l on) {
@@ -539,21 +353,6 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     *rays += p.rays;
 }
 
-/* The tile that item `index` of a colour renders. */
-CLR_INLINE Work tile_of_item(__global const FrameData *frame, uint index, uint colour) {
-    const uint odd_x = colour == CLR_ALL_TILES ? 0u : colour & 1u;
-    const uint odd_y = colour == CLR_ALL_TILES ? 0u : colour >> 1u;
-    const uint step = colour == CLR_ALL_TILES ? 1u : 2u;
-    const uint tiles = (frame->width + TILE - 1u) / TILE;
-    const uint columns = (tiles - odd_x + step - 1u) / step;
-    Work work;
-    work.x = (int)((index % columns * step + odd_x) * TILE);
-    work.y = (int)((index / columns * step + odd_y) * TILE);
-    work.width = min(TILE, (int)frame->width - work.x);
-    work.height = min(TILE, (int)frame->height - work.y);
-    return work;
-}
-
 /* Item i of the launch renders tile first_item + i of those of `colour` (CLR_ALL_TILES: of all),
    the sample blocks [first_block, end_block). The film holds the rows [film_row, film_end) of the
    picture, all that the launch reaches, and item_counters those of the tiles from first_tile on;
@@ -597,12 +396,14 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
     uint rays = 0;
     ItemCounters uncounted = {0u, 0u, 0u, 0u};
     BlockSums block;
+    uint renderings = 1u;
+#if HAS_VARIANCE
     const uint all_tiles = tiles * ((frame->height + TILE - 1u) / TILE);
     const uint group = frame->control_group > 0u ? tile / frame->control_group : 0u;
-    const uint renderings = frame->control_group > 0u &&
-                                    tile == clr_control_tile(group, frame->control_group, all_tiles)
-                                ? 2u
-                                : 1u;
+    if (frame->control_group > 0u &&
+        tile == clr_control_tile(group, frame->control_group, all_tiles))
+        renderings = 2u;
+#endif
     for (uint b = first_block; b < end_block; ++b) {
         work.first_sample = CLR_BLOCK_START(b);
         work.end_sample = min(CLR_BLOCK_START(b + 1u), frame->total_samples);
@@ -616,9 +417,11 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
             if (rendering == 0u)
                 film_add(&scene, film, work.x, work.y - (int)film_row, (int)(film_end - film_row),
                          samples, &block);
+#if HAS_VARIANCE
             if (renderings > 1u)
                 control_add(&scene, control + (size_t)group * TILE_PIXELS, &block,
                             rendering == 0u ? 1.0f : -1.0f);
+#endif
         }
     }
     const uint low = counters.rays_low + rays;

@@ -101,6 +101,16 @@ public:
 
     void send(int signal) const { kill(process_, signal); }
 
+    /// Waits until it has printed `text` on stderr, for two minutes at most.
+    void wait_for(const std::string &text) const {
+        for (int i = 0; i < 12000; ++i) {
+            if (read_file(err_file()).find(text) != std::string::npos)
+                return;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        throw std::runtime_error("clrender has not printed '" + text + "'");
+    }
+
     /// Waits for its end.
     ProgramResult wait() {
         int status = 0;

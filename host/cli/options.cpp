@@ -39,12 +39,10 @@ constexpr const char *examples =
     "  clrender compare a.exr b.exr --tolerance 1e-3\n"
     "  clrender test scene.xml --reference right.exr\n"
     "\n"
-    "Exit codes: 0 fine, 1 the pictures differ (compare,\n"
-    "test), 2 wrong input, 3 no usable device (or\n"
-    "one that fails --self-test), 4 a file could not be written (all others are), 5 out of "
-    "memory,\n"
-    "70 a fault of clrender itself, 130 and 143 interrupted by SIGINT and SIGTERM (the picture so\n"
-    "far is written).\n";
+    "Exit codes: 0 fine, 1 the pictures differ (compare, test), 2 wrong input, 3 no usable device\n"
+    "(or one that fails --self-test), 4 a file could not be written (all others are), 5 out of\n"
+    "memory, 70 a fault of clrender itself, 130 and 143 interrupted by SIGINT and SIGTERM (the\n"
+    "picture so far is written).\n";
 
 /// Reads all of `text` as a number; nothing where there is anything else in it.
 template <class Number> std::optional<Number> parse_number(const std::string &text) {

@@ -3,6 +3,7 @@
 #include "output_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,10 @@ double per_second(double count, double seconds) {
 
 void write_stats(const std::string &path, const RenderResult &result, const RunTimes &times) {
     const RenderStats &stats = result.stats;
+    // What is not a number becomes null.
+    const auto measured = [&](double value) {
+        return std::isnan(result.error.relative_variance) ? std::nan("") : value;
+    };
     const nlohmann::ordered_json json = {
         {"device", stats.device},
         {"lanes", stats.lanes},
@@ -46,8 +51,8 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
         {"triangles", stats.triangles},
         {"error",
          {{"relative_variance", result.error.relative_variance},
-          {"variance_factor", result.error.factor.value},
-          {"variance_factor_error", result.error.factor.error}}},
+          {"variance_factor", measured(result.error.factor.value)},
+          {"variance_factor_error", measured(result.error.factor.error)}}},
         {"nonfinite_samples", stats.nonfinite_samples},
         {"clamped_pixels", stats.clamped_pixels},
         {"pixels_without_samples", result.gaps},

@@ -1,11 +1,9 @@
 #include "device_scene.h"
 
-#include "memory_limit.h"
 #include "upload.h"
 
 #include <algorithm>
 #include <cstddef>
-#include <fmt/core.h>
 #include <type_traits>
 
 namespace clrender::inline CLR_PRECISION {
@@ -27,28 +25,16 @@ template <typename T> std::size_t bytes_of(const std::vector<T> &array) {
     return array.size() * sizeof(T);
 }
 
-void check_memory(const DeviceEntry &entry, FlatScene &flat, std::size_t film_bytes) {
-    std::size_t total = film_bytes + sizeof(flat.frame);
-    std::size_t largest = film_bytes;
-    for_each_array(flat, [&](const auto &array) {
-        total += bytes_of(array);
-        largest = std::max(largest, bytes_of(array));
-    });
-    // Each array lies on the host too until it is uploaded.
-    check_total_memory(total + largest);
-    if (total > entry.memory_bytes)
-        throw DeviceError(fmt::format("the scene and the film need {} bytes, but {} has {}", total,
-                                      entry.name, entry.memory_bytes));
-    if (largest > entry.max_allocation_bytes)
-        throw DeviceError(fmt::format("one array of {} bytes is needed, but {} allows {}", largest,
-                                      entry.name, entry.max_allocation_bytes));
-}
-
 } // namespace
 
+std::size_t largest_array_bytes(FlatScene &flat) {
+    std::size_t largest = 0;
+    for_each_array(flat, [&](const auto &array) { largest = std::max(largest, bytes_of(array)); });
+    return largest;
+}
+
 DeviceScene::DeviceScene(const cl::Context &context, const cl::CommandQueue &queue,
-                         const DeviceEntry &entry, FlatScene &flat, std::size_t film_bytes) {
-    check_memory(entry, flat, film_bytes);
+                         FlatScene &flat) {
     with_device("uploading the scene", [&] {
         const auto add = [&](const void *data, std::size_t bytes) {
             buffers_.push_back(upload(context, queue, data, bytes));

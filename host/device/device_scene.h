@@ -6,13 +6,14 @@
 
 namespace clrender::inline CLR_PRECISION {
 
+/// Bytes of the largest of the arrays that are uploaded.
+std::size_t largest_array_bytes(FlatScene &flat);
+
 class DeviceScene {
 public:
     /// Uploads all arrays and frees each of them then: a processor's device memory is the host's.
-    /// Empty ones become a few bytes, since OpenCL knows no empty buffers. Throws DeviceError with
-    /// the byte counts where the device's memory does not suffice.
-    DeviceScene(const cl::Context &context, const cl::CommandQueue &queue, const DeviceEntry &entry,
-                FlatScene &flat, std::size_t film_bytes);
+    /// Empty ones become a few bytes, since OpenCL knows no empty buffers. Throws DeviceError.
+    DeviceScene(const cl::Context &context, const cl::CommandQueue &queue, FlatScene &flat);
 
     /// Binds the buffers to the kernel's first arguments, in order; returns how many.
     cl_uint bind(cl::Kernel &kernel) const;

@@ -46,8 +46,8 @@ void append_source(const std::vector<KernelSource> &sources, const std::string &
 /// The options that every program is compiled with, and these. Where a device can round quotients
 /// and roots correctly it does so when asked; else OpenCL lets them be off by some units.
 std::string with_standard(const cl::Device &device, const std::string &options) {
-    const bool exact = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() &
-                        CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    const bool exact =
+        (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     return std::string("-cl-std=CL1.2 ") +
            (exact ? "-cl-fp32-correctly-rounded-divide-sqrt " : "") + options;
 }

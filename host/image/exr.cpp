@@ -12,7 +12,9 @@
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <ImfVersion.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -42,24 +44,18 @@ private:
     std::uint64_t offset_ = 0;
 };
 
-class MemoryOutput : public Imf::OStream {
+class FileOutput : public Imf::OStream {
 public:
-    MemoryOutput() : OStream("image") {}
+    explicit FileOutput(OutputFile &file) : OStream("image"), file_(file) {}
 
     void write(const char *source, int count) override {
-        const auto size = static_cast<std::size_t>(count);
-        if (offset_ + size > bytes.size())
-            bytes.resize(offset_ + size);
-        std::memcpy(bytes.data() + offset_, source, size);
-        offset_ += size;
+        file_.write({source, static_cast<std::size_t>(count)});
     }
-    std::uint64_t tellp() override { return offset_; }
-    void seekp(std::uint64_t offset) override { offset_ = offset; }
-
-    std::string bytes;
+    std::uint64_t tellp() override { return file_.position(); }
+    void seekp(std::uint64_t position) override { file_.seek(position); }
 
 private:
-    std::uint64_t offset_ = 0;
+    OutputFile &file_;
 };
 
 std::vector<std::string> channel_names(const std::string &layer, const Image &image) {
@@ -226,13 +222,13 @@ std::optional<Image> decode_exr_layer(std::string_view bytes, const std::string 
     return with_reason([&] { return decode_layer(bytes, layer); });
 }
 
-std::string encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
-                       const std::vector<ImageLayer> &extra_layers) {
+void encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
+                const std::vector<ImageLayer> &extra_layers, bool fast, OutputFile &file) {
     // One flat list of planes: the main layer, then the others with their prefix.
     std::vector<ImageLayer> layers = {{"", &image}};
     layers.insert(layers.end(), extra_layers.begin(), extra_layers.end());
     Imf::Header header(image.width, image.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = fast ? Imf::RLE_COMPRESSION : Imf::ZIP_COMPRESSION;
     for (const auto &[name, value] : metadata)
         header.insert(name, Imf::StringAttribute(value));
     if (image.color_space == ColorSpace::xyz)
@@ -250,13 +246,13 @@ std::string encode_exr(const Image &image, const std::map<std::string, std::stri
         }
     }
 
-    MemoryOutput stream;
-    {
-        Imf::OutputFile file(stream, header, 0);
-        file.setFrameBuffer(buffer);
-        file.writePixels(image.height);
-    }
-    return std::move(stream.bytes);
+    const int threads = tbb::this_task_arena::max_concurrency();
+    if (Imf::globalThreadCount() < threads)
+        Imf::setGlobalThreadCount(threads);
+    FileOutput stream(file);
+    Imf::OutputFile output(stream, header, threads);
+    output.setFrameBuffer(buffer);
+    output.writePixels(image.height);
 }
 
 } // namespace clrender::image_format

@@ -2,6 +2,7 @@
 /// The file formats behind read_image and write_image. All work on bytes in memory; the readers
 /// throw FormatError, to which read_image adds the file's name.
 
+#include "../output_file.h"
 #include "../scene/limits.h"
 #include "image.h"
 
@@ -54,12 +55,14 @@ Image decode_exr(std::string_view bytes, std::vector<std::string> &remarks);
 /// One layer of it, in the colours that are stored; none where it has no such layer.
 std::optional<Image> decode_exr_layer(std::string_view bytes, const std::string &layer);
 
-/// `image` as a file in memory. 8-bit formats: sRGB, clamped, times 2^exposure.
-std::string encode_png(const Image &image, double exposure);
-std::string encode_jpeg(const Image &image, double exposure);
-std::string encode_hdr(const Image &image);
-std::string encode_pfm(const Image &image);
-std::string encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
-                       const std::vector<ImageLayer> &extra_layers);
+/// Write `image` to `file`, piece by piece: no copy of a large picture in memory but for its 8-bit
+/// values, and for HDR the clamped ones. 8-bit formats: sRGB, clamped, times 2^exposure. `fast`:
+/// larger files in a fraction of the time.
+void encode_png(const Image &image, double exposure, bool fast, OutputFile &file);
+void encode_jpeg(const Image &image, double exposure, OutputFile &file);
+void encode_hdr(const Image &image, OutputFile &file);
+void encode_pfm(const Image &image, OutputFile &file);
+void encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
+                const std::vector<ImageLayer> &extra_layers, bool fast, OutputFile &file);
 
 } // namespace clrender::image_format

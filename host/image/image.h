@@ -48,11 +48,12 @@ struct ImageLayer {
 
 /// Writes `image` (linear f32) by the extension of `path`: .png .jpg (sRGB, clamped, multiplied by
 /// 2^exposure), .hdr .pfm (RGB) .exr (32-bit float, all channels, `metadata` as string attributes,
-/// `extra_layers` as further channels). XYZ stays so in .exr only. Written as write_output_file()
-/// does. Throws InputError for an unknown extension or a picture without pixels, else OutputError.
+/// `extra_layers` as further channels). XYZ stays so in .exr only. `fast`: .png and .exr take a
+/// fraction of the time and more space. Written as write_output_file() does. Throws InputError for
+/// an unknown extension or a picture without pixels, else OutputError.
 void write_image(const std::string &path, const Image &image, double exposure = 0,
                  const std::map<std::string, std::string> &metadata = {},
-                 const std::vector<ImageLayer> &extra_layers = {});
+                 const std::vector<ImageLayer> &extra_layers = {}, bool fast = false);
 
 /// True if `write_image` knows the extension of `path`.
 bool is_writable_image_path(const std::string &path);

@@ -69,20 +69,23 @@ Image decode_pfm(std::string_view bytes) {
     return image;
 }
 
-std::string encode_pfm(const Image &image) {
+void encode_pfm(const Image &image, OutputFile &file) {
     // Alpha has no place in the format.
     const bool is_grey = image.channels <= 2;
     const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t kept = is_grey ? 1 : 3;
     const auto width = static_cast<std::size_t>(image.width);
-    std::string bytes = std::string(is_grey ? "Pf" : "PF") + "\n" + std::to_string(image.width) +
-                        " " + std::to_string(image.height) + "\n" +
-                        (std::endian::native == std::endian::little ? "-1.0" : "1.0") + "\n";
-    for (auto y = static_cast<std::size_t>(image.height); y-- > 0;)
+    file.write(std::string(is_grey ? "Pf" : "PF") + "\n" + std::to_string(image.width) + " " +
+               std::to_string(image.height) + "\n" +
+               (std::endian::native == std::endian::little ? "-1.0" : "1.0") + "\n");
+    std::vector<float> row;
+    for (auto y = static_cast<std::size_t>(image.height); y-- > 0;) {
+        row.clear();
         for (std::size_t x = 0; x < width; ++x)
-            bytes.append(reinterpret_cast<const char *>(&image.f32[(y * width + x) * channels]),
-                         kept * sizeof(float));
-    return bytes;
+            for (std::size_t c = 0; c < kept; ++c)
+                row.push_back(image.f32[(y * width + x) * channels + c]);
+        file.write({reinterpret_cast<const char *>(row.data()), row.size() * sizeof(float)});
+    }
 }
 
 } // namespace clrender::image_format

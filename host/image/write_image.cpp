@@ -4,12 +4,17 @@
 #include "formats.h"
 #include "image.h"
 
+#include <png.h>
 #include <stb/stb_image_write.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
+#include <new>
 
 namespace clrender {
 
@@ -17,9 +22,34 @@ namespace image_format {
 
 namespace {
 
+/// A file as a C library's callback sees it: what fails is thrown once the library has returned.
+struct CallbackFile {
+    OutputFile &file;
+    std::exception_ptr failure;
+
+    bool write(const void *data, std::size_t size) {
+        try {
+            if (!failure)
+                file.write({static_cast<const char *>(data), size});
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        return !failure;
+    }
+    void finish(bool encoded) const {
+        if (failure)
+            std::rethrow_exception(failure);
+        if (!encoded)
+            throw FormatError("cannot be encoded");
+    }
+};
+
 void append(void *target, void *data, int size) {
-    static_cast<std::string *>(target)->append(static_cast<const char *>(data),
-                                               static_cast<std::size_t>(size));
+    static_cast<CallbackFile *>(target)->write(data, static_cast<std::size_t>(size));
+}
+
+ssize_t append_cookie(void *target, const char *data, std::size_t size) {
+    return static_cast<CallbackFile *>(target)->write(data, size) ? static_cast<ssize_t>(size) : 0;
 }
 
 std::uint8_t to_8bit(double value) {
@@ -34,42 +64,54 @@ std::vector<std::uint8_t> quantise(const Image &image, double exposure, std::siz
     const double factor = std::exp2(exposure);
     const auto channels = static_cast<std::size_t>(image.channels);
     const bool has_alpha = channels == 2 || channels == 4;
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(image.f32.size() / channels * kept);
-    for (std::size_t i = 0; i < image.f32.size(); i += channels) {
-        for (std::size_t c = 0; c < kept; ++c) {
-            const double value = image.f32[i + c];
-            const bool is_alpha = has_alpha && c == channels - 1;
-            bytes.push_back(to_8bit(is_alpha ? value : srgb_encode(std::min(value * factor, 1.0))));
-        }
-    }
+    const auto width = static_cast<std::size_t>(image.width);
+    std::vector<std::uint8_t> bytes(image.f32.size() / channels * kept);
+    tbb::parallel_for(0, image.height, [&](int row) {
+        const std::size_t first = static_cast<std::size_t>(row) * width;
+        for (std::size_t i = first; i < first + width; ++i)
+            for (std::size_t c = 0; c < kept; ++c) {
+                const double value = image.f32[i * channels + c];
+                const bool is_alpha = has_alpha && c == channels - 1;
+                bytes[i * kept + c] =
+                    to_8bit(is_alpha ? value : srgb_encode(std::min(value * factor, 1.0)));
+            }
+    });
     return bytes;
 }
 
 } // namespace
 
-std::string encode_png(const Image &image, double exposure) {
+void encode_png(const Image &image, double exposure, bool fast, OutputFile &file) {
     const auto channels = static_cast<std::size_t>(image.channels);
     const auto pixels = quantise(image, exposure, channels);
-    std::string bytes;
-    if (stbi_write_png_to_func(append, &bytes, image.width, image.height, image.channels,
-                               pixels.data(), image.width * image.channels) == 0)
-        throw FormatError("cannot be encoded");
-    return bytes;
+    constexpr std::array<png_uint_32, 4> formats = {PNG_FORMAT_GRAY, PNG_FORMAT_GA, PNG_FORMAT_RGB,
+                                                    PNG_FORMAT_RGBA};
+    png_image png = {};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = static_cast<png_uint_32>(image.width);
+    png.height = static_cast<png_uint_32>(image.height);
+    png.format = formats[channels - 1];
+    png.flags = fast ? PNG_IMAGE_FLAG_FAST : 0;
+
+    CallbackFile target{file, {}};
+    std::FILE *stream = fopencookie(&target, "w", {nullptr, append_cookie, nullptr, nullptr});
+    if (stream == nullptr)
+        throw std::bad_alloc();
+    const bool encoded = png_image_write_to_stdio(&png, stream, 0, pixels.data(), 0, nullptr) != 0;
+    const bool closed = std::fclose(stream) == 0;
+    target.finish(encoded && closed);
 }
 
-std::string encode_jpeg(const Image &image, double exposure) {
+void encode_jpeg(const Image &image, double exposure, OutputFile &file) {
     constexpr int quality = 95;
     const int kept = image.channels <= 2 ? 1 : 3;
     const auto pixels = quantise(image, exposure, static_cast<std::size_t>(kept));
-    std::string bytes;
-    if (stbi_write_jpg_to_func(append, &bytes, image.width, image.height, kept, pixels.data(),
-                               quality) == 0)
-        throw FormatError("cannot be encoded");
-    return bytes;
+    CallbackFile target{file, {}};
+    target.finish(stbi_write_jpg_to_func(append, &target, image.width, image.height, kept,
+                                         pixels.data(), quality) != 0);
 }
 
-std::string encode_hdr(const Image &image) {
+void encode_hdr(const Image &image, OutputFile &file) {
     // RGBE has no sign, no infinity and ends near 2^127.
     std::vector<float> rgb;
     const auto channels = static_cast<std::size_t>(image.channels);
@@ -79,10 +121,9 @@ std::string encode_hdr(const Image &image) {
             const float value = image.f32[i + (channels <= 2 ? 0 : c)];
             rgb.push_back(value > 0 ? std::min(value, 1e38F) : 0.0F);
         }
-    std::string bytes;
-    if (stbi_write_hdr_to_func(append, &bytes, image.width, image.height, 3, rgb.data()) == 0)
-        throw FormatError("cannot be encoded");
-    return bytes;
+    CallbackFile target{file, {}};
+    target.finish(
+        stbi_write_hdr_to_func(append, &target, image.width, image.height, 3, rgb.data()) != 0);
 }
 
 } // namespace image_format
@@ -96,28 +137,30 @@ std::string lower_extension(const std::string &path) {
     return extension;
 }
 
-std::string encode(const std::string &extension, const Image &image, double exposure,
-                   const std::map<std::string, std::string> &metadata,
-                   const std::vector<ImageLayer> &extra_layers) {
+void encode(const std::string &extension, const Image &image, double exposure,
+            const std::map<std::string, std::string> &metadata,
+            const std::vector<ImageLayer> &extra_layers, bool fast, OutputFile &file) {
     using namespace image_format;
     if (image.color_space == ColorSpace::xyz && extension != ".exr")
-        return encode(extension, in_linear_srgb(image), exposure, metadata, extra_layers);
+        return encode(extension, in_linear_srgb(image), exposure, metadata, extra_layers, fast,
+                      file);
     if (extension == ".png")
-        return encode_png(image, exposure);
-    if (extension == ".jpg" || extension == ".jpeg")
-        return encode_jpeg(image, exposure);
-    if (extension == ".hdr")
-        return encode_hdr(image);
-    if (extension == ".pfm")
-        return encode_pfm(image);
-    return encode_exr(image, metadata, extra_layers);
+        encode_png(image, exposure, fast, file);
+    else if (extension == ".jpg" || extension == ".jpeg")
+        encode_jpeg(image, exposure, file);
+    else if (extension == ".hdr")
+        encode_hdr(image, file);
+    else if (extension == ".pfm")
+        encode_pfm(image, file);
+    else
+        encode_exr(image, metadata, extra_layers, fast, file);
 }
 
 } // namespace
 
 void write_image(const std::string &path, const Image &image, double exposure,
                  const std::map<std::string, std::string> &metadata,
-                 const std::vector<ImageLayer> &extra_layers) {
+                 const std::vector<ImageLayer> &extra_layers, bool fast) {
     if (!is_writable_image_path(path))
         throw InputError({path, 0}, "unknown extension, expected .png, .jpg, .hdr, .exr or .pfm");
     if (image.type != PixelType::f32 || image.f32.empty())
@@ -126,13 +169,18 @@ void write_image(const std::string &path, const Image &image, double exposure,
     if (image.color_space == ColorSpace::xyz && (extension == ".hdr" || extension == ".pfm"))
         log::warn({path, 0}, "the XYZ of the film is written as linear sRGB, as only .exr can say "
                              "that it holds XYZ");
-    std::string bytes;
+    OutputFile file(path);
     try {
-        bytes = encode(extension, image, exposure, metadata, extra_layers);
+        encode(extension, image, exposure, metadata, extra_layers, fast, file);
+    } catch (const OutputError &) {
+        throw;
+    } catch (const std::bad_alloc &) {
+        throw;
     } catch (const std::exception &error) {
+        file.check();
         throw OutputError(path, std::string("cannot be encoded (") + error.what() + ")");
     }
-    write_output_file(path, bytes);
+    file.commit();
 }
 
 bool is_writable_image_path(const std::string &path) {

@@ -24,9 +24,8 @@ constexpr int most_blocks = 1024;
 
 } // namespace
 
-int preview_samples(int spp) {
-    // A sixty-fourth of the time, but no more than one block.
-    return std::clamp(spp / 64, 1, CLR_BLOCK_START(1));
+int preview_samples(int spp, bool in_bands) {
+    return in_bands ? std::clamp(spp / 256, 1, 4) : 1;
 }
 
 LaunchPace::LaunchPace(std::size_t columns, std::size_t rows, std::size_t least_items)

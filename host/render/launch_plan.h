@@ -7,8 +7,10 @@
 
 namespace clrender {
 
-/// Samples of every pixel that a render of `spp` begins with where its first pass takes long.
-int preview_samples(int spp);
+/// Samples of every pixel that a render of `spp` begins with where its first pass takes long: in
+/// one piece one, as that pass follows; in bands up to four, since the last band waits for all
+/// others.
+int preview_samples(int spp, bool in_bands);
 
 /// Rows of tiles [first_row, end_row) of a picture `columns` tiles wide: a band, or all of it. In
 /// bands of splatted pictures first_row is even, so that bands hold whole rows of every colour.

@@ -131,8 +131,7 @@ void PathTracer::compile(RenderStats &stats) {
 }
 
 void PathTracer::upload(RenderStats &stats) {
-    const std::size_t film_bytes = band_bytes(tiles_, bands_.front());
-    scene_ = std::make_unique<DeviceScene>(context_, queue_, entry_, flat_, film_bytes);
+    scene_ = std::make_unique<DeviceScene>(context_, queue_, flat_);
     film_ = std::make_unique<DeviceFilm>(context_, queue_, tiles_, bands_, control_);
     with_device("binding the buffers", [&] {
         launch_arguments_ = film_->bind(kernel_, scene_->bind(kernel_));
@@ -185,6 +184,9 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan) {
     progress_ += paths;
     if (options_.on_progress)
         options_.on_progress(progress_ / progress_total_);
+    if (!has_samples_)
+        log::detail("rendering: the first launch has ended");
+    has_samples_ = true;
 }
 
 /// Runs the launches of a plan. Ends as `slow` where that is allowed and the first pass turns out
@@ -237,7 +239,7 @@ void PathTracer::take(Picture &picture, const Band &band, const LaunchPlan &plan
 
 /// Gives every pixel a few samples, which are taken again with all others.
 PathTracer::Ended PathTracer::preview(int spp, Picture &picture, RenderStats &stats) {
-    const int samples = preview_samples(spp);
+    const int samples = preview_samples(spp, bands_.size() > 1);
     progress_ = 0;
     progress_total_ = 1 + static_cast<double>(samples) / spp;
     scene_->set_samples(queue_, samples);

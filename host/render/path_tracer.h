@@ -91,6 +91,7 @@ private:
     std::unique_ptr<ProfileRecorder> recorder_; ///< where a profile is wanted
     double paths_done_ = 0;                     ///< of the picture as it stands
     double progress_ = 0, progress_total_ = 1;  ///< paths, with those that are traced again
+    bool has_samples_ = false;                  ///< a launch has ended
     double seconds_read_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};
 };

@@ -13,28 +13,12 @@ constexpr std::size_t chunk_bytes = std::size_t(32) << 20;
 /// Rows of pixels that one thread takes over at a time.
 constexpr std::size_t grain_rows = 16;
 
-int channels_of(PixelFormat format) {
-    switch (format) {
-    case PixelFormat::luminance:
-        return 1;
-    case PixelFormat::luminance_alpha:
-        return 2;
-    case PixelFormat::rgb:
-    case PixelFormat::xyz:
-        return 3;
-    case PixelFormat::rgba:
-    case PixelFormat::xyza:
-        break;
-    }
-    return 4;
-}
-
-Image black(const PictureTiles &tiles, int channels) {
+Image black(const PictureTiles &tiles, std::size_t channels) {
     Image image;
     image.width = static_cast<int>(tiles.width);
     image.height = static_cast<int>(tiles.height);
-    image.channels = channels;
-    image.f32.assign(tiles.pixels() * static_cast<std::size_t>(channels), 0.0f);
+    image.channels = static_cast<int>(channels);
+    image.f32.assign(tiles.pixels() * channels, 0.0f);
     return image;
 }
 
@@ -53,11 +37,28 @@ void copy_pixels(Image &part, std::size_t part_row, std::size_t first, std::size
 
 } // namespace
 
+std::size_t channels_of(PixelFormat format) {
+    switch (format) {
+    case PixelFormat::luminance:
+        return 1;
+    case PixelFormat::luminance_alpha:
+        return 2;
+    case PixelFormat::rgb:
+    case PixelFormat::xyz:
+        return 3;
+    case PixelFormat::rgba:
+    case PixelFormat::xyza:
+        break;
+    }
+    return 4;
+}
+
 Picture::Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent)
     : image(black(tiles, channels_of(format))), tiles_(tiles), format_(format), exponent_(exponent),
       rows_(tiles.rows()) {
     if (layers.variance)
         variance = black(tiles, channels_of(format));
+    image.color_space = variance.color_space = color_space(format);
     if (layers.samples)
         samples = black(tiles, 1);
 }

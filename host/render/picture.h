@@ -10,6 +10,9 @@
 
 namespace clrender {
 
+/// Channels of a picture.
+std::size_t channels_of(PixelFormat format);
+
 class Picture {
 public:
     /// What there is besides the image.

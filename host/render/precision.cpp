@@ -7,15 +7,16 @@ namespace clrender {
 /// render.cpp and all that it flattens with, compiled with CLR_DOUBLE.
 namespace double_precision {
 
-std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options);
+MemoryNeed memory_at_precision(Scene &&scene, const RenderOptions &options);
 RenderResult render_at_precision(Scene &&scene, const RenderOptions &options);
 std::unique_ptr<AdvancingRender> start_at_precision(Scene &&scene, const RenderOptions &options);
 
 } // namespace double_precision
 
-std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options) {
-    return options.double_precision ? double_precision::device_bytes_at_precision(scene, options)
-                                    : single_precision::device_bytes_at_precision(scene, options);
+MemoryNeed memory_needed(Scene &&scene, const RenderOptions &options) {
+    return options.double_precision
+               ? double_precision::memory_at_precision(std::move(scene), options)
+               : single_precision::memory_at_precision(std::move(scene), options);
 }
 
 RenderResult render_scene(const Scene &scene, const RenderOptions &options) {

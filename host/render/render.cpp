@@ -1,8 +1,10 @@
 #include "render_at_precision.h"
 
+#include "device/device_scene.h"
 #include "film/film_blocks.h"
 #include "flatten/flat_scene.h"
 #include "log.h"
+#include "memory_need.h"
 #include "path_tracer.h"
 #include "profile.h"
 
@@ -44,6 +46,29 @@ FlattenOptions flatten_options(const RenderOptions &options) {
     return flatten_options;
 }
 
+/// The group of tiles that share a control tile; independent samples need none.
+std::size_t control_group_of(const FlatScene &flat, const RenderOptions &options) {
+    if (!options.with_variance || options.independent_sampler)
+        return 0;
+    return choose_control_group(
+        {flat.frame.width, flat.frame.height, static_cast<std::size_t>(flat.config.TILE)});
+}
+
+/// Values of each pixel: of the picture, and of the layers that are wanted.
+std::size_t values_of(PixelFormat format, const RenderOptions &options) {
+    return channels_of(format) * (options.with_variance ? 2 : 1) + (options.with_samples ? 1 : 0);
+}
+
+/// To be asked when the hierarchy is built and the configuration complete. `values` of each pixel.
+MemoryNeed need_of(FlatScene &flat, const DeviceEntry &entry, const RenderOptions &options,
+                   std::size_t values, bool to_compile) {
+    const PictureTiles tiles = tiles_of(flat);
+    const ControlLayout control{tiles.width, tiles.height, tiles.side, flat.frame.control_group};
+    return memory_need(entry, {flat.bytes(), largest_array_bytes(flat)},
+                       {band_bytes(tiles, bands_of(entry, flat, options).front()), control.bytes()},
+                       tiles.pixels() * values * sizeof(float), to_compile);
+}
+
 void warn_of_samples(const RenderStats &stats) {
     if (stats.nonfinite_samples > 0)
         log::warn(fmt::format("{} samples were not finite and count as black; the first in pixel "
@@ -75,12 +100,15 @@ public:
     bool advance(int samples) override;
     [[nodiscard]] int samples() const override { return done_; }
     RenderResult read() override;
+    /// The last picture; takes it away.
+    RenderResult finish() { return result_of(std::move(*picture_)); }
     /// What is left for the profile, if there is one, after all else.
     void complete_profile();
     [[nodiscard]] bool in_one_piece() const { return tracer_->in_one_piece(); }
 
 private:
     void configure();
+    RenderResult result_of(Picture &&picture);
 
     RenderOptions options_;
     Stopwatch watch_;
@@ -111,6 +139,7 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     stats_.seconds_build = watch_.lap("build");
     tracer_->compile(stats_);
     stats_.seconds_compile = watch_.lap("compile");
+    check_memory_need(need_of(flat_, entry_, options_, values_of(format, options_), false), entry_);
     tracer_->upload(stats_);
     stats_.seconds_upload = watch_.lap("upload");
     picture_ = std::make_unique<Picture>(
@@ -126,13 +155,11 @@ void Rendering::configure() {
     config.TILE = tile_of(entry_, config);
     config.SAMPLER = options_.independent_sampler ? 1 : 0;
     config.PROFILE = options_.profile != nullptr ? 1 : 0;
+    config.HAS_VARIANCE = options_.with_variance ? 1 : 0;
     FrameData &frame = flat_.frame;
     frame.seed = options_.seed;
     frame.total_samples = static_cast<uint>(spp_);
-    // Independent samples need no control.
-    if (options_.with_variance && !options_.independent_sampler)
-        frame.control_group = static_cast<uint>(choose_control_group(
-            {frame.width, frame.height, static_cast<std::size_t>(config.TILE)}));
+    frame.control_group = static_cast<uint>(control_group_of(flat_, options_));
     stats_.device = entry_.name;
     stats_.lanes = config.LANES;
     stats_.width = static_cast<int>(frame.width);
@@ -161,17 +188,21 @@ bool Rendering::advance(int samples) {
 }
 
 RenderResult Rendering::read() {
+    return result_of(Picture(*picture_));
+}
+
+RenderResult Rendering::result_of(Picture &&picture) {
     RenderResult result;
     result.interrupted = stopped_;
     if (stopped_)
-        result.gaps = picture_->fill_gaps();
-    stats_.clamped_pixels = picture_->clamped.count;
-    stats_.clamped_x = static_cast<int>(picture_->clamped.first % flat_.frame.width);
-    stats_.clamped_y = static_cast<int>(picture_->clamped.first / flat_.frame.width);
+        result.gaps = picture.fill_gaps();
+    stats_.clamped_pixels = picture.clamped.count;
+    stats_.clamped_x = static_cast<int>(picture.clamped.first % flat_.frame.width);
+    stats_.clamped_y = static_cast<int>(picture.clamped.first / flat_.frame.width);
     result.stats = stats_;
-    result.image = picture_->image;
-    result.samples = picture_->samples;
-    result.variance = picture_->variance;
+    result.image = std::move(picture.image);
+    result.samples = std::move(picture.samples);
+    result.variance = std::move(picture.variance);
     if (options_.with_variance) {
         result.error.factor = variance_factor(tracer_->control_layout(), tracer_->read_control(),
                                               result.image, flat_.frame.film_exponent);
@@ -191,11 +222,14 @@ void Rendering::complete_profile() {
 
 } // namespace
 
-std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options) {
+MemoryNeed memory_at_precision(Scene &&scene, const RenderOptions &options) {
     FlatScene flat = flatten(scene, flatten_options(options));
+    const std::size_t values = values_of(scene.film.pixel_format, options);
+    scene = {};
     build_hierarchy(flat);
     flat.config.TILE = CLR_LEAST_TILE;
     DeviceEntry entry;
+    entry.is_cpu = true;
     try {
         entry = choose_device(options.device);
         flat.config.TILE = tile_of(entry, flat.config);
@@ -203,13 +237,14 @@ std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &o
         // A scene can be checked where there is no device: it will be one like this, and large.
         entry.max_allocation_bytes = entry.memory_bytes = std::numeric_limits<std::size_t>::max();
     }
-    return flat.bytes() + band_bytes(tiles_of(flat), bands_of(entry, flat, options).front());
+    flat.frame.control_group = static_cast<uint>(control_group_of(flat, options));
+    return need_of(flat, entry, options, values, true);
 }
 
 RenderResult render_at_precision(Scene &&scene, const RenderOptions &options) {
     Rendering rendering(std::move(scene), options);
     rendering.render_all();
-    RenderResult result = rendering.read();
+    RenderResult result = rendering.finish();
     rendering.complete_profile();
     warn_of_samples(result.stats);
     return result;

@@ -3,10 +3,12 @@
 
 #include "device/kernel_config.h"
 #include "film/control.h"
+#include "memory_need.h"
 #include "scene/scene.h"
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
@@ -64,7 +66,8 @@ struct RenderStats {
 struct ErrorEstimate {
     /// The mean over pixels and colour channels of variance / (value^2 + .01): the expected relMSE
     /// against a picture without noise. Infinite where a pixel has fewer than two samples.
-    double relative_variance = 0;
+    /// Not a number where the variance is not wanted.
+    double relative_variance = std::numeric_limits<double>::quiet_NaN();
     /// The variance over that of independent samples, as the control tiles tell.
     VarianceFactor factor;
 };
@@ -84,9 +87,9 @@ struct RenderResult {
     std::size_t gaps = 0; ///< pixels without a sample, which show their neighbours
 };
 
-/// Bytes that rendering the scene takes on a device: what is uploaded, and the film. Needs no
-/// device.
-std::size_t device_bytes_needed(const Scene &scene, const RenderOptions &options = {});
+/// What rendering the scene takes, where the kernel does not have to be compiled. Needs no device;
+/// frees the shapes and images of the scene.
+MemoryNeed memory_needed(Scene &&scene, const RenderOptions &options = {});
 
 /// Flattens, compiles, uploads and renders. Throws DeviceError.
 RenderResult render_scene(const Scene &scene, const RenderOptions &options = {});

@@ -6,7 +6,7 @@
 
 namespace clrender::inline CLR_PRECISION {
 
-std::size_t device_bytes_at_precision(const Scene &scene, const RenderOptions &options);
+MemoryNeed memory_at_precision(Scene &&scene, const RenderOptions &options);
 
 RenderResult render_at_precision(Scene &&scene, const RenderOptions &options);
 

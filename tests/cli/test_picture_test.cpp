@@ -104,6 +104,19 @@ TEST_CASE("clrender test excludes the effect that is asked for, or says that it 
     CHECK_THAT(undecided.out, Catch::StartsWith("test: cannot decide, after 960 samples"));
 }
 
+TEST_CASE("clrender test knows the colours of a film in XYZ, and of a grey one") {
+    const std::string format = GENERATE("xyz", "luminance");
+    const TempFolder folder;
+    make_reference(folder, {"-s", "1024", "-r", "16x12", "-D", "format=" + format, "--aov",
+                            "variance,samples"});
+    const ProgramResult same =
+        test_box(folder, 1, {"-r", "16x12", "--effect", "20%", "-D", "format=" + format});
+    INFO(same.out << same.err);
+    CHECK_THAT(same.out, Catch::StartsWith("test: same"));
+    const ProgramResult other = test_box(folder, 1, {"-r", "16x12", "--effect", "20%"});
+    CHECK(other.exit_code == (format == "xyz" ? 0 : 2));
+}
+
 TEST_CASE("clrender test tells where, and takes a reference without layers as exact") {
     const TempFolder folder;
     make_reference(folder, {"-s", "4096", "-r", "16x12"});

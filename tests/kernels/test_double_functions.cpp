@@ -74,8 +74,7 @@ TEST_CASE("in double precision the functions are right to a few units in the las
         const long double angle = two_pi * a[0];
         sincos.add(std::sin(angle) - b[0]);
         sincos.add(std::cos(angle) - b[1]);
-        turn.add(std::atan2(static_cast<long double>(a[1]),
-                            static_cast<long double>(a[2])) /
+        turn.add(std::atan2(static_cast<long double>(a[1]), static_cast<long double>(a[2])) /
                      two_pi -
                  b[2]);
         const long double sine2 = static_cast<long double>(a[4]) / a[3];
