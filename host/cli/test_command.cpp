@@ -28,6 +28,7 @@ enum class Outcome { same, differs, undecided, hopeless, stopped };
 
 /// The test while it runs.
 struct Run {
+    std::string scene;
     const Reference &reference;
     AdvancingRender &render;
     PictureTest test;
@@ -68,8 +69,7 @@ Outcome run_until_decided(Run &run, int most_samples) {
             return Outcome::stopped;
         run.result = run.render.read();
         if (const std::string place = verify::nonfinite_pixel(run.result.image); !place.empty())
-            throw InputError({run.result.stats.device, 0},
-                             "pixel " + place + " of the render is NaN or infinite");
+            throw InputError({run.scene, 0}, "pixel " + place + " is NaN or infinite");
         run.test.add(run.result.image);
         const bool is_last = run.test.next_samples() > most_samples;
         if (samples < next_look && !is_last)
@@ -183,16 +183,21 @@ int test_command(const TestOptions &options, Scene &&scene, const RenderOptions 
     render_in_srgb(scene.film);
     RenderOptions render_options = how;
     render_options.with_variance = true;
+    const std::string name = scene.name;
     const auto render = start_render(std::move(scene), render_options);
-    Run run = {reference, *render, PictureTest(reference, options.effect), {}, {}, 0};
+    Run run = {name, reference, *render, PictureTest(reference, options.effect), {}, {}, 0};
     const Outcome outcome = run_until_decided(run, how.spp);
     if (outcome == Outcome::stopped) {
         log::info("test: interrupted");
         return exit_signal + interrupted();
     }
     write(run.result);
+    if (run.result.stats.nonfinite_samples > 0)
+        log::warn(fmt::format("{} samples were not finite and count as black",
+                              run.result.stats.nonfinite_samples));
     const std::string samples =
-        fmt::format("after {} samples a pixel, {} looks", run.render.samples(), run.looks);
+        fmt::format("after {} samples a pixel, {} look{}", run.render.samples(), run.looks,
+                    run.looks == 1 ? "" : "s");
     switch (outcome) {
     case Outcome::differs:
         print("test: differs, {}\n", samples);

@@ -47,20 +47,24 @@ double sum(const Weights &weights) {
 
 /// Along x with one set of weights and along y with another; pixels outside are those of the edge.
 Plane convolve(const Plane &plane, const Weights &along_x, const Weights &along_y) {
-    const int radius = static_cast<int>(along_x.size() / 2);
+    const auto radius = static_cast<int>(along_x.size() / 2);
+    const auto place = [radius](int i) {
+        const int index = i + radius;
+        return static_cast<std::size_t>(index);
+    };
     Plane rows(plane.width, plane.height), result(plane.width, plane.height);
     tbb::parallel_for(0, plane.height, [&](int y) {
         for (int x = 0; x < plane.width; ++x)
             for (int i = -radius; i <= radius; ++i)
                 rows.values[rows.index(x, y)] +=
-                    along_x[static_cast<std::size_t>(i + radius)] *
+                    along_x[place(i)] *
                     plane.values[plane.index(std::clamp(x + i, 0, plane.width - 1), y)];
     });
     tbb::parallel_for(0, plane.height, [&](int y) {
         for (int x = 0; x < plane.width; ++x)
             for (int i = -radius; i <= radius; ++i)
                 result.values[result.index(x, y)] +=
-                    along_y[static_cast<std::size_t>(i + radius)] *
+                    along_y[place(i)] *
                     rows.values[rows.index(x, std::clamp(y + i, 0, plane.height - 1))];
     });
     return result;

@@ -67,8 +67,8 @@ private:
     [[nodiscard]] std::vector<double> batch_variances() const;
     /// The mean of `variances` around a window and channel.
     [[nodiscard]] double variance_around(const std::vector<double> &variances, std::size_t i) const;
-    /// `variance`: the squared error from the batches.
-    [[nodiscard]] Finding find(std::size_t i, double variance, int samples, double spread) const;
+    /// `own`: the render's squared error from its batches.
+    [[nodiscard]] Finding find(std::size_t i, double own, int samples, double spread) const;
 
     std::string name_;
     Windows windows_;
