@@ -58,7 +58,7 @@ TEST_CASE("FLIP of equal pictures is 0, and it is symmetric") {
     Image broken = plain(0, 0, 0);
     broken.type = PixelType::f32;
     broken.u8.clear();
-    broken.f32.assign(8 * 8 * 3, std::numeric_limits<float>::quiet_NaN());
+    broken.f32.assign(std::size_t{8} * 8 * 3, std::numeric_limits<float>::quiet_NaN());
     for (const float value : flip_map(broken, black).f32)
         CHECK(value == 0);
 }

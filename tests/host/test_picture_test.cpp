@@ -16,13 +16,14 @@ using namespace clrender::verify;
 namespace {
 
 constexpr int width = 24, height = 16;
+constexpr std::size_t pixels = std::size_t{width} * height;
 
 Image image_of(int channels, float value) {
     Image image;
     image.width = width;
     image.height = height;
     image.channels = channels;
-    image.f32.assign(static_cast<std::size_t>(width * height * channels), value);
+    image.f32.assign(pixels * static_cast<std::size_t>(channels), value);
     return image;
 }
 
@@ -82,19 +83,20 @@ TEST_CASE("Student's t has the tails of the tables and of closed forms") {
 
 TEST_CASE("Windows overlap by half and reach the edges of the picture") {
     const Windows windows(10, 7, 4);
-    CHECK(windows.count() == 4 * 3);
+    CHECK(windows.count() == 12);
     CHECK(windows.left(3) == 6);
     CHECK(windows.top(8) == 3);
     Image image;
     image.width = 10;
     image.height = 7;
     image.channels = 2;
-    for (int i = 0; i < 70; ++i)
-        image.f32.insert(image.f32.end(), {static_cast<float>(i % 10), static_cast<float>(i / 10)});
+    for (int y = 0; y < 7; ++y)
+        for (int x = 0; x < 10; ++x)
+            image.f32.insert(image.f32.end(), {static_cast<float>(x), static_cast<float>(y)});
     const auto means = windows.means(image, 2);
-    CHECK(means[2 * 3] == Approx(7.5));
-    CHECK(means[2 * 3 + 1] == Approx(1.5));
-    CHECK(means[2 * 8 + 1] == Approx(4.5));
+    CHECK(means[6] == Approx(7.5));
+    CHECK(means[7] == Approx(1.5));
+    CHECK(means[17] == Approx(4.5));
     CHECK(Windows(10, 7, 0).count() == 1);
 }
 
@@ -128,7 +130,9 @@ TEST_CASE("Noise alone is the same, and a few pixels that differ are found where
     const bool has_change = GENERATE(false, true);
     for (int y = 5; has_change && y < 9; ++y)
         for (int x = 13; x < 17; ++x)
-            changed.f32[static_cast<std::size_t>(3 * (y * width + x) + 1)] *= 0.9F;
+            changed
+                .f32[3 * (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)) + 1] *=
+                0.9F;
     PictureTest test(reference, 0.01);
     Noise noise(changed, 0.5, 2);
     add_up_to(test, noise, 16384);
@@ -157,7 +161,7 @@ TEST_CASE("Light of rare samples that has not come yet is not missing") {
     int alarms = 0;
     for (unsigned seed = 1; seed <= seeds; ++seed) {
         std::mt19937 random(seed);
-        std::vector<double> sums(static_cast<std::size_t>(width * height), 0.0);
+        std::vector<double> sums(pixels, 0.0);
         PictureTest test(reference, 0.01);
         for (int before = 0; test.next_samples() <= samples;) {
             std::poisson_distribution<int> events(chance * (test.next_samples() - before));
