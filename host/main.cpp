@@ -7,6 +7,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/stats_file.h"
+#include "cli/test_command.h"
 #include "device/cl_context.h"
 #include "error.h"
 #include "log.h"
@@ -197,6 +198,31 @@ int render_command(const cli::Options &options) {
     return result.interrupted ? cli::exit_signal + cli::interrupted() : cli::exit_fine;
 }
 
+int test_command(const cli::Options &options) {
+    cli::catch_interrupts();
+    Profile profile;
+    activity = "reading " + options.scene;
+    Scene scene = load_scene(options.scene, {options.defines});
+    apply_options(options, scene);
+    scene.sample_count = options.spp.value_or(cli::default_test_samples);
+    check_outputs(options, scene);
+    const std::string name = scene.name;
+    cli::Progress progress(static_cast<double>(scene.film.crop_width) * scene.film.crop_height *
+                               scene.sample_count,
+                           scene.sample_count, !options.quiet);
+    RenderOptions how = render_options(options, progress, profile);
+    how.spp = scene.sample_count;
+    activity = "testing " + options.scene;
+    cli::Outputs outputs;
+    const int exit_code =
+        cli::test_command(options.test, std::move(scene), how, [&](const RenderResult &result) {
+            progress.finish();
+            if (!options.outputs.empty())
+                write_pictures(options, name, result, outputs);
+        });
+    return outputs.report() ? exit_code : cli::exit_output;
+}
+
 int self_test_command(const cli::Options &options) {
     activity = "testing the device";
     RenderOptions how;
@@ -217,7 +243,10 @@ int run(const cli::Options &options) {
     case cli::Command::list_devices:
         return show_devices();
     case cli::Command::compare:
-        return compare_command(options.compare.a, options.compare.b, options.compare.tolerance);
+        return compare_command(options.compare.a, options.compare.b, options.compare.tolerance,
+                               options.compare.flip);
+    case cli::Command::test:
+        return test_command(options);
     case cli::Command::self_test:
         return self_test_command(options);
     case cli::Command::render:

@@ -5,7 +5,7 @@ namespace clrender::cli {
 
 enum ExitCode {
     exit_fine = 0,
-    exit_differs = 1,   ///< compare: beyond the tolerance
+    exit_differs = 1,   ///< compare: beyond the tolerance; test: beyond the noise
     exit_input = 2,     ///< an option or a file is wrong
     exit_device = 3,    ///< no usable device, or it failed
     exit_output = 4,    ///< a file could not be written; all others are

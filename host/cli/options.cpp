@@ -5,6 +5,7 @@
 #include "log.h"
 #include "output_file.h"
 #include "scene/limits.h"
+#include "verify/picture_test.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -27,6 +28,8 @@ namespace {
 
 constexpr int max_int = std::numeric_limits<int>::max();
 
+constexpr int least_test_samples = verify::first_batch * verify::least_batches;
+
 constexpr const char *examples =
     "Examples:\n"
     "  clrender scene.xml                       writes scene.png and scene.exr\n"
@@ -34,9 +37,10 @@ constexpr const char *examples =
     "  clrender scene.xml -r 320x180 -s 16      a quick look\n"
     "  clrender scene.xml -D light_radius=10    sets a <default> of the scene\n"
     "  clrender compare a.exr b.exr --tolerance 1e-3\n"
+    "  clrender test scene.xml --reference right.exr\n"
     "\n"
-    "Exit codes: 0 fine, 1 the pictures differ (compare), 2 wrong input, 3 no usable device (or\n"
-    "one that fails --self-test), 4 a file could not be written (all others are), 5 out of\n"
+    "Exit codes: 0 fine, 1 the pictures differ (compare, test), 2 wrong input, 3 no usable device\n"
+    "(or one that fails --self-test), 4 a file could not be written (all others are), 5 out of\n"
     "memory, 70 a fault of clrender itself, 130 and 143 interrupted by SIGINT and SIGTERM (the\n"
     "picture so far is written).\n";
 
@@ -223,6 +227,7 @@ struct RawOptions {
     std::string strategy = "mis";
     std::string profile;
     std::string max_memory;
+    std::string effect = "1%";
     std::vector<std::string> generic;
     std::vector<std::string> layers;
     std::vector<std::string> defines;
@@ -370,6 +375,12 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
     app.add_flag("--preview", options.preview)->group("");
 }
 
+std::string check_png(const std::string &path) {
+    if (fs::path(path).extension() != ".png")
+        return fmt::format("'{}' does not end in .png", path);
+    return why_not_writable(path);
+}
+
 CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {
     CLI::App *command = app.add_subcommand(
         "compare", "Prints how far picture A is from picture B: mean squared error, relMSE,\n"
@@ -382,6 +393,51 @@ CLI::App *add_compare(CLI::App &app, CompareOptions &compare) {
                      "The largest relMSE that counts as equal (default: 0)")
         ->type_name("X")
         ->check(number(0, 1e9));
+    command
+        ->add_option("--flip", compare.flip,
+                     "Writes where the eye sees a difference (FLIP), and prints its mean")
+        ->type_name("FILE.png")
+        ->check(CLI::Validator(check_png, ""));
+    return command;
+}
+
+/// A share above 0 and at most 1, or with % behind it of 100.
+std::optional<double> parse_effect(const std::string &text) {
+    const bool percent = text.ends_with('%');
+    const auto value = parse_number<double>(text.substr(0, text.size() - (percent ? 1 : 0)));
+    const double share = value.value_or(0) / (percent ? 100 : 1);
+    return share > 0 && share <= 1 ? std::optional(share) : std::nullopt;
+}
+
+std::string check_effect(const std::string &text) {
+    return parse_effect(text) ? "" : fmt::format("'{}' is not a share such as 1% or 0.01", text);
+}
+
+CLI::App *add_test(CLI::App &app, Options &options, RawOptions &raw) {
+    CLI::App *command = app.add_subcommand(
+        "test", "Renders SCENE, with the options of a render, until it differs from a reference\n"
+                "by more than the noise of both (exit code 1) or an effect is excluded (0), at\n"
+                "most -s samples a pixel (default: 65536)");
+    command->footer("");
+    command->fallthrough();
+    command->add_option("SCENE", options.scene, "As for a render")->required()->type_name("");
+    command
+        ->add_option("--reference", options.test.reference,
+                     "The picture as it should be, best written with --aov variance,samples")
+        ->required()
+        ->type_name("REF.exr");
+    command
+        ->add_option("--effect", raw.effect,
+                     "The change of the picture's mean to be excluded; of 8x8 pixels ten times\n"
+                     "as much, of 4x4 five times (default: 1%)")
+        ->type_name("X")
+        ->check(CLI::Validator(check_effect, ""));
+    command
+        ->add_option("--marked", options.test.marked,
+                     "Shows where the pictures differ, if they do (default: the reference's\n"
+                     "name with _differs.png, in the current folder)")
+        ->type_name("FILE.png")
+        ->check(CLI::Validator(check_png, ""));
     return command;
 }
 
@@ -401,6 +457,9 @@ void finish_options(Options &options, const RawOptions &raw) {
     options.profile = !raw.profile.empty();
     if (raw.profile != bare_profile)
         options.profile_trace = raw.profile;
+    options.test.effect = *parse_effect(raw.effect);
+    if (options.command == Command::test && options.test.marked.empty())
+        options.test.marked = fs::path(options.test.reference).stem().string() + "_differs.png";
     options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
     options.layers.insert(raw.layers.begin(), raw.layers.end());
     for (const std::string &name : raw.generic) {
@@ -430,6 +489,12 @@ void check_combination(const Options &options, const RawOptions &raw) {
         refuse("compare takes two pictures and no SCENE");
     if (options.command == Command::self_test && !options.scene.empty())
         refuse("--self-test takes no SCENE");
+    if (options.command == Command::test &&
+        (options.check || !options.stats.empty() || !raw.profile.empty()))
+        refuse("test excludes --check, --stats and --profile");
+    if (options.command == Command::test && options.spp && *options.spp < least_test_samples)
+        refuse(fmt::format("test takes at least {} samples, -s allows {}", least_test_samples,
+                           *options.spp));
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
@@ -463,12 +528,14 @@ ParseResult parse_options(int argc, const char *const *argv) {
     add_sampling_options(app, options, raw);
     add_run_options(app, options, raw);
     const CLI::App *compare = add_compare(app, options.compare);
+    const CLI::App *test = add_test(app, options, raw);
 
     try {
         app.parse(reversed_arguments(argc, argv));
         options.command = raw.list_devices    ? Command::list_devices
                           : raw.self_test     ? Command::self_test
                           : compare->parsed() ? Command::compare
+                          : test->parsed()    ? Command::test
                                               : Command::render;
         check_combination(options, raw);
     } catch (const CLI::Success &help_or_version) {

@@ -12,7 +12,7 @@
 
 namespace clrender::cli {
 
-enum class Command { render, compare, list_devices, self_test };
+enum class Command { render, compare, test, list_devices, self_test };
 enum class Accel { bvh, none };
 
 struct Resolution {
@@ -25,14 +25,23 @@ struct CompareOptions {
     std::string a;
     std::string b;
     double tolerance = 0; ///< the largest relMSE that counts as equal
+    std::string flip;     ///< PNG file for the FLIP map, or empty
+};
+
+/// `clrender test SCENE`, beside the options of a render.
+struct TestOptions {
+    std::string reference;
+    std::string marked;   ///< PNG, or empty: the reference's name with _differs.png
+    double effect = 0.01; ///< the relative difference of the mean that is to be excluded
 };
 
 /// A valid command line. What is not set is left to the scene file or to the program.
 struct Options {
     Command command = Command::render;
     std::string scene;
-    std::vector<std::string> outputs; ///< never empty when rendering: the defaults are filled in
-    std::string device = "auto";      ///< auto, cpu, gpu, an index or a part of a name
+    std::vector<std::string>
+        outputs;                 ///< never empty for Command::render: the defaults are filled in
+    std::string device = "auto"; ///< auto, cpu, gpu, an index or a part of a name
     std::optional<int> spp;
     std::optional<Resolution> resolution;
     std::optional<int> max_depth; ///< -1: no limit, as in a scene file
@@ -62,6 +71,7 @@ struct Options {
     int band_rows = 0;                ///< rows of tiles in one band; 0: the program chooses
     bool preview = false;             ///< a few samples of all pixels first, whatever the size
     CompareOptions compare;
+    TestOptions test;
 };
 
 /// Either `options`, or the exit code to end with at once: 0 after --help and --version, 2 after a

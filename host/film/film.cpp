@@ -29,11 +29,6 @@ std::vector<Rgb> colour_rows(PixelFormat format) {
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 }
 
-ColorSpace color_space(PixelFormat format) {
-    return format == PixelFormat::xyz || format == PixelFormat::xyza ? ColorSpace::xyz
-                                                                     : ColorSpace::srgb;
-}
-
 bool has_alpha(PixelFormat format) {
     return format == PixelFormat::luminance_alpha || format == PixelFormat::rgba ||
            format == PixelFormat::xyza;
@@ -81,6 +76,11 @@ Image make_image(int width, int height, const std::vector<Rgb> &rows, bool alpha
 }
 
 } // namespace
+
+ColorSpace color_space(PixelFormat format) {
+    return format == PixelFormat::xyz || format == PixelFormat::xyza ? ColorSpace::xyz
+                                                                     : ColorSpace::srgb;
+}
 
 Image film_mean(const Film &film, PixelFormat format) {
     std::vector<Channels> means;

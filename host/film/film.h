@@ -16,6 +16,9 @@ struct Film {
     std::vector<FilmPixel> pixels;
 };
 
+/// What the colours of a picture in `format` are.
+ColorSpace color_space(PixelFormat format);
+
 /// The weighted mean of each pixel, in the channels of `format`; a pixel without samples is black.
 Image film_mean(const Film &film, PixelFormat format);
 

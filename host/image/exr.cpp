@@ -154,16 +154,9 @@ void remark_on_layers(const ExrChannels &chosen, std::vector<std::string> &remar
     remarks.push_back("layer " + chosen.layer + " is read, these are not: " + list);
 }
 
-Image decode(std::string_view bytes, std::vector<std::string> &remarks) {
-    check_exr_header(bytes);
-    MemoryInput stream(bytes);
-    Imf::InputFile file(stream, 0);
+/// An image for the channels of a complete file, without its pixels.
+Image allocate(const Imf::InputFile &file, const ExrChannels &chosen) {
     const Imath::Box2i window = file.header().dataWindow();
-    const ExrChannels chosen = choose_exr_channels(file.header().channels());
-    remark_on_layers(chosen, remarks);
-    if (Imf::isMultiPart(file.version()))
-        remarks.emplace_back("of its parts the first one is read");
-
     Image image;
     image.width = window.max.x - window.min.x + 1;
     image.height = window.max.y - window.min.y + 1;
@@ -174,6 +167,19 @@ Image decode(std::string_view bytes, std::vector<std::string> &remarks) {
     claim_pixels(image.width, image.height, chosen.names.size() * sizeof(float));
     image.f32.resize(static_cast<std::size_t>(image.width) *
                      static_cast<std::size_t>(image.height) * chosen.names.size());
+    return image;
+}
+
+Image decode(std::string_view bytes, std::vector<std::string> &remarks) {
+    check_exr_header(bytes);
+    MemoryInput stream(bytes);
+    Imf::InputFile file(stream, 0);
+    const ExrChannels chosen = choose_exr_channels(file.header().channels());
+    remark_on_layers(chosen, remarks);
+    if (Imf::isMultiPart(file.version()))
+        remarks.emplace_back("of its parts the first one is read");
+
+    Image image = allocate(file, chosen);
     if (chosen.colors == ExrColors::luma_chroma)
         read_luma_chroma(bytes, chosen.layer, image);
     else
@@ -182,16 +188,38 @@ Image decode(std::string_view bytes, std::vector<std::string> &remarks) {
     return image;
 }
 
-} // namespace
+std::optional<Image> decode_layer(std::string_view bytes, const std::string &layer) {
+    check_exr_header(bytes);
+    MemoryInput stream(bytes);
+    Imf::InputFile file(stream, 0);
+    const auto chosen = find_exr_layer(file.header().channels(), layer);
+    if (!chosen)
+        return std::nullopt;
+    Image image = allocate(file, *chosen);
+    image.color_space = chosen->colors == ExrColors::xyz ? ColorSpace::xyz : ColorSpace::srgb;
+    read_channels(file, chosen->names, image);
+    return image;
+}
 
-Image decode_exr(std::string_view bytes, std::vector<std::string> &remarks) {
+/// What the library throws as a FormatError.
+template <typename Decode> auto with_reason(Decode decode_file) {
     try {
-        return decode(bytes, remarks);
+        return decode_file();
     } catch (const FormatError &) {
         throw;
     } catch (const std::exception &error) {
         throw FormatError(std::string("cannot be decoded (") + error.what() + ")");
     }
+}
+
+} // namespace
+
+Image decode_exr(std::string_view bytes, std::vector<std::string> &remarks) {
+    return with_reason([&] { return decode(bytes, remarks); });
+}
+
+std::optional<Image> decode_exr_layer(std::string_view bytes, const std::string &layer) {
+    return with_reason([&] { return decode_layer(bytes, layer); });
 }
 
 void encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,

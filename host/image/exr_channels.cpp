@@ -98,6 +98,16 @@ std::vector<std::string> names_of(const Layer &layer, ExrColors colors) {
                       ", expected R, G, B or X, Y, Z or Y (with RY, BY or without), and maybe A");
 }
 
+/// Throws if a channel does not have one value for each pixel.
+void check_sampling(const Imf::ChannelList &channels, const ExrChannels &chosen) {
+    for (const std::string &name : chosen.names) {
+        const Imf::Channel &channel = channels[name];
+        if (chosen.colors != ExrColors::luma_chroma &&
+            (channel.xSampling != 1 || channel.ySampling != 1))
+            throw FormatError("channel " + name + " is subsampled, expected one value per pixel");
+    }
+}
+
 } // namespace
 
 ExrChannels choose_exr_channels(const Imf::ChannelList &channels) {
@@ -123,12 +133,19 @@ ExrChannels choose_exr_channels(const Imf::ChannelList &channels) {
         std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(chosen.other_layers),
                      [&](const std::string &name) { return name != chosen.layer; });
 
-    for (const std::string &name : chosen.names) {
-        const Imf::Channel &channel = channels[name];
-        if (chosen.colors != ExrColors::luma_chroma &&
-            (channel.xSampling != 1 || channel.ySampling != 1))
-            throw FormatError("channel " + name + " is subsampled, expected one value per pixel");
-    }
+    check_sampling(channels, chosen);
+    return chosen;
+}
+
+std::optional<ExrChannels> find_exr_layer(const Imf::ChannelList &channels,
+                                          const std::string &layer) {
+    const auto layers = layers_of(channels);
+    const auto found = layers.find(layer);
+    const auto colors = found != layers.end() ? colors_of(found->second) : std::nullopt;
+    if (!colors || *colors == ExrColors::luma_chroma)
+        return std::nullopt;
+    const ExrChannels chosen = {*colors, layer, names_of(found->second, *colors), {}};
+    check_sampling(channels, chosen);
     return chosen;
 }
 

@@ -3,6 +3,7 @@
 
 #include <ImfChannelList.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,9 @@ struct ExrChannels {
 /// that it is the whole picture, else the first one, those with R G B before the others. Throws
 /// FormatError.
 ExrChannels choose_exr_channels(const Imf::ChannelList &channels);
+
+/// The same for the layer called `layer`; none where there is no such layer with colours.
+std::optional<ExrChannels> find_exr_layer(const Imf::ChannelList &channels,
+                                          const std::string &layer);
 
 } // namespace clrender::image_format

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -51,6 +52,8 @@ Image decode_pfm(std::string_view bytes);
 /// OpenEXR: the first part over the data window, in linear sRGB or grey. Adds to `remarks` what
 /// else the person should know of the file.
 Image decode_exr(std::string_view bytes, std::vector<std::string> &remarks);
+/// One layer of it, in the colours that are stored; none where it has no such layer.
+std::optional<Image> decode_exr_layer(std::string_view bytes, const std::string &layer);
 
 /// Write `image` to `file`, piece by piece: no copy of a large picture in memory but for its 8-bit
 /// values, and for HDR the clamped ones. 8-bit formats: sRGB, clamped, times 2^exposure. `fast`:

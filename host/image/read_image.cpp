@@ -2,6 +2,7 @@
 #include "../log.h"
 #include "formats.h"
 #include "image.h"
+#include "layers.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,12 +14,14 @@ namespace clrender {
 
 namespace {
 
+constexpr std::string_view exr_signature = "\x76\x2f\x31\x01";
+
 Image decode(std::string_view bytes, const std::string &path, bool raw,
              std::vector<std::string> &remarks) {
     using namespace image_format;
     if (bytes.empty())
         throw FormatError("the file is empty, expected an image");
-    if (bytes.starts_with("\x76\x2f\x31\x01"))
+    if (bytes.starts_with(exr_signature))
         return decode_exr(bytes, remarks);
     if (bytes.starts_with("#?"))
         return decode_hdr(bytes);
@@ -58,6 +61,19 @@ Image read_image(const std::string &path, const SourceLocation &referrer, bool r
     if (!is_named)
         throw InputError({path, 0}, reason);
     throw InputError(referrer, path + ": " + reason);
+}
+
+std::optional<Image> read_exr_layer(const std::string &path, const std::string &name) {
+    const std::string bytes = read_input_file(path, {});
+    if (!bytes.starts_with(exr_signature))
+        return std::nullopt;
+    try {
+        return image_format::decode_exr_layer(bytes, name);
+    } catch (const image_format::FormatError &error) {
+        throw InputError({path, 0}, error.what());
+    } catch (const std::bad_alloc &) {
+        throw InputError({path, 0}, "does not fit into memory");
+    }
 }
 
 double srgb_encode(double linear) {

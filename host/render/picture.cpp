@@ -58,6 +58,7 @@ Picture::Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, i
       rows_(tiles.rows()) {
     if (layers.variance)
         variance = black(tiles, channels_of(format));
+    image.color_space = variance.color_space = color_space(format);
     if (layers.samples)
         samples = black(tiles, 1);
 }

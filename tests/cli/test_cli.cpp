@@ -48,7 +48,7 @@ TEST_CASE("The version and the help are printed") {
           "--max-depth", "--rr-depth",      "--seed",         "--lanes",   "-D",
           "--exposure",  "--pixel-centers", "--accel",        "--check",   "--stats",
           "--profile",   "--quiet",         "--verbose",      "--version", "compare",
-          "--precision"})
+          "test",        "--precision"})
         CHECK_THAT(help.out, Catch::Contains(option));
 }
 
@@ -260,6 +260,11 @@ TEST_CASE("compare: 0 for the same picture, 1 for another, 2 for none") {
     CHECK_THAT(same.out, Catch::Contains("relMSE"));
     CHECK(compare({"a.pfm", "c.pfm"}).exit_code == 1);
     CHECK(compare({"a.pfm", "c.pfm", "--tolerance", "1000"}).exit_code == 0);
+
+    const ProgramResult seen = compare({"a.pfm", "c.pfm", "--flip", "flip.png"});
+    CHECK_THAT(seen.out, Catch::Contains("FLIP                0."));
+    CHECK(folder.has("flip.png"));
+    CHECK(compare({"a.pfm", "c.pfm", "--flip", "flip.exr"}).exit_code == 2);
 
     const ProgramResult missing = compare({"a.pfm", "no.pfm"});
     CHECK(missing.exit_code == 2);
