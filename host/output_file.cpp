@@ -26,7 +26,7 @@ constexpr std::size_t buffer_bytes = std::size_t(1) << 18;
 
 } // namespace
 
-OutputFile::OutputFile(const std::string &path) : path_(path) {
+AtomicFile::AtomicFile(const std::string &path) : path_(path) {
     // The name of a device, a FIFO or a folder must not be replaced by a picture.
     struct stat status = {};
     if (::stat(path.c_str(), &status) == 0) {
@@ -46,27 +46,27 @@ OutputFile::OutputFile(const std::string &path) : path_(path) {
         fail();
 }
 
-OutputFile::~OutputFile() {
+AtomicFile::~AtomicFile() {
     if (descriptor_ >= 0)
         ::close(descriptor_);
     if (!committed_)
         ::unlink(temporary_.c_str());
 }
 
-void OutputFile::write(std::string_view bytes) {
+void AtomicFile::write(std::string_view bytes) {
     pending_ += bytes;
     if (pending_.size() >= buffer_bytes)
         flush();
 }
 
-void OutputFile::seek(std::uint64_t position) {
+void AtomicFile::seek(std::uint64_t position) {
     flush();
     if (::lseek(descriptor_, static_cast<off_t>(position), SEEK_SET) < 0)
         fail();
     written_ = position;
 }
 
-void OutputFile::flush() {
+void AtomicFile::flush() {
     std::string_view bytes = pending_;
     while (!bytes.empty()) {
         const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
@@ -78,7 +78,7 @@ void OutputFile::flush() {
     pending_.clear();
 }
 
-void OutputFile::commit() {
+void AtomicFile::commit() {
     check();
     flush();
     if (::fsync(descriptor_) != 0)
@@ -93,7 +93,7 @@ void OutputFile::commit() {
 
 /// Puts the new name on the disk too. Where a file system cannot do that, the file is written all
 /// the same.
-void OutputFile::sync_folder() const {
+void AtomicFile::sync_folder() const {
     const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder < 0)
         return;
@@ -101,20 +101,20 @@ void OutputFile::sync_folder() const {
     ::close(folder);
 }
 
-void OutputFile::check() const {
+void AtomicFile::check() const {
     if (failure_ != 0)
         throw OutputError(path_,
                           std::string("cannot be written (") + std::strerror(failure_) + ")");
 }
 
-void OutputFile::fail() {
+void AtomicFile::fail() {
     failure_ = errno;
     check();
     throw OutputError(path_, "cannot be written");
 }
 
 void write_output_file(const std::string &path, std::string_view bytes) {
-    OutputFile file(path);
+    AtomicFile file(path);
     file.write(bytes);
     file.commit();
 }
@@ -128,7 +128,7 @@ std::string why_not_writable(const std::string &path) {
     if (!std::filesystem::is_directory(folder_of(path), ignored))
         return "there is no folder '" + folder_of(path) + "'";
     try {
-        const OutputFile probe(path);
+        const AtomicFile probe(path);
     } catch (const OutputError &error) {
         return error.what();
     }

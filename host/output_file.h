@@ -10,12 +10,12 @@ namespace clrender {
 /// A new file in the folder of `path` that takes its place by commit(), or else vanishes: pictures
 /// go to it piece by piece, as they are encoded. All members throw OutputError that names `path`
 /// and the reason.
-class OutputFile {
+class AtomicFile {
 public:
-    explicit OutputFile(const std::string &path);
-    ~OutputFile();
-    OutputFile(const OutputFile &) = delete;
-    OutputFile &operator=(const OutputFile &) = delete;
+    explicit AtomicFile(const std::string &path);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile &) = delete;
+    AtomicFile &operator=(const AtomicFile &) = delete;
 
     /// Adds bytes at the position, and moves it behind them.
     void write(std::string_view bytes);
@@ -40,7 +40,7 @@ private:
     bool committed_ = false;
 };
 
-/// Writes `bytes` to an OutputFile and commits it.
+/// Writes `bytes` to an AtomicFile and commits it.
 void write_output_file(const std::string &path, std::string_view bytes);
 
 /// Why `path` cannot be written, or "". Finds out by making a temporary file in its folder, which

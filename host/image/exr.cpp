@@ -46,7 +46,7 @@ private:
 
 class FileOutput : public Imf::OStream {
 public:
-    explicit FileOutput(OutputFile &file) : OStream("image"), file_(file) {}
+    explicit FileOutput(AtomicFile &file) : OStream("image"), file_(file) {}
 
     void write(const char *source, int count) override {
         file_.write({source, static_cast<std::size_t>(count)});
@@ -55,7 +55,7 @@ public:
     void seekp(std::uint64_t position) override { file_.seek(position); }
 
 private:
-    OutputFile &file_;
+    AtomicFile &file_;
 };
 
 std::vector<std::string> channel_names(const std::string &layer, const Image &image) {
@@ -223,7 +223,7 @@ std::optional<Image> decode_exr_layer(std::string_view bytes, const std::string 
 }
 
 void encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
-                const std::vector<ImageLayer> &extra_layers, bool fast, OutputFile &file) {
+                const std::vector<ImageLayer> &extra_layers, bool fast, AtomicFile &file) {
     // One flat list of planes: the main layer, then the others with their prefix.
     std::vector<ImageLayer> layers = {{"", &image}};
     layers.insert(layers.end(), extra_layers.begin(), extra_layers.end());

@@ -58,11 +58,11 @@ std::optional<Image> decode_exr_layer(std::string_view bytes, const std::string 
 /// Write `image` to `file`, piece by piece: no copy of a large picture in memory but for its 8-bit
 /// values, and for HDR the clamped ones. 8-bit formats: sRGB, clamped, times 2^exposure. `fast`:
 /// larger files in a fraction of the time.
-void encode_png(const Image &image, double exposure, bool fast, OutputFile &file);
-void encode_jpeg(const Image &image, double exposure, OutputFile &file);
-void encode_hdr(const Image &image, OutputFile &file);
-void encode_pfm(const Image &image, OutputFile &file);
+void encode_png(const Image &image, double exposure, bool fast, AtomicFile &file);
+void encode_jpeg(const Image &image, double exposure, AtomicFile &file);
+void encode_hdr(const Image &image, AtomicFile &file);
+void encode_pfm(const Image &image, AtomicFile &file);
 void encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
-                const std::vector<ImageLayer> &extra_layers, bool fast, OutputFile &file);
+                const std::vector<ImageLayer> &extra_layers, bool fast, AtomicFile &file);
 
 } // namespace clrender::image_format

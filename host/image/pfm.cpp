@@ -69,7 +69,7 @@ Image decode_pfm(std::string_view bytes) {
     return image;
 }
 
-void encode_pfm(const Image &image, OutputFile &file) {
+void encode_pfm(const Image &image, AtomicFile &file) {
     // Alpha has no place in the format.
     const bool is_grey = image.channels <= 2;
     const auto channels = static_cast<std::size_t>(image.channels);

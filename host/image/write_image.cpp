@@ -24,7 +24,7 @@ namespace {
 
 /// A file as a C library's callback sees it: what fails is thrown once the library has returned.
 struct CallbackFile {
-    OutputFile &file;
+    AtomicFile &file;
     std::exception_ptr failure;
 
     bool write(const void *data, std::size_t size) {
@@ -81,7 +81,7 @@ std::vector<std::uint8_t> quantise(const Image &image, double exposure, std::siz
 
 } // namespace
 
-void encode_png(const Image &image, double exposure, bool fast, OutputFile &file) {
+void encode_png(const Image &image, double exposure, bool fast, AtomicFile &file) {
     const auto channels = static_cast<std::size_t>(image.channels);
     const auto pixels = quantise(image, exposure, channels);
     constexpr std::array<png_uint_32, 4> formats = {PNG_FORMAT_GRAY, PNG_FORMAT_GA, PNG_FORMAT_RGB,
@@ -102,7 +102,7 @@ void encode_png(const Image &image, double exposure, bool fast, OutputFile &file
     target.finish(encoded && closed);
 }
 
-void encode_jpeg(const Image &image, double exposure, OutputFile &file) {
+void encode_jpeg(const Image &image, double exposure, AtomicFile &file) {
     constexpr int quality = 95;
     const int kept = image.channels <= 2 ? 1 : 3;
     const auto pixels = quantise(image, exposure, static_cast<std::size_t>(kept));
@@ -111,7 +111,7 @@ void encode_jpeg(const Image &image, double exposure, OutputFile &file) {
                                          pixels.data(), quality) != 0);
 }
 
-void encode_hdr(const Image &image, OutputFile &file) {
+void encode_hdr(const Image &image, AtomicFile &file) {
     // RGBE has no sign, no infinity and ends near 2^127.
     std::vector<float> rgb;
     const auto channels = static_cast<std::size_t>(image.channels);
@@ -139,7 +139,7 @@ std::string lower_extension(const std::string &path) {
 
 void encode(const std::string &extension, const Image &image, double exposure,
             const std::map<std::string, std::string> &metadata,
-            const std::vector<ImageLayer> &extra_layers, bool fast, OutputFile &file) {
+            const std::vector<ImageLayer> &extra_layers, bool fast, AtomicFile &file) {
     using namespace image_format;
     if (image.color_space == ColorSpace::xyz && extension != ".exr")
         return encode(extension, in_linear_srgb(image), exposure, metadata, extra_layers, fast,
@@ -169,7 +169,7 @@ void write_image(const std::string &path, const Image &image, double exposure,
     if (image.color_space == ColorSpace::xyz && (extension == ".hdr" || extension == ".pfm"))
         log::warn({path, 0}, "the XYZ of the film is written as linear sRGB, as only .exr can say "
                              "that it holds XYZ");
-    OutputFile file(path);
+    AtomicFile file(path);
     try {
         encode(extension, image, exposure, metadata, extra_layers, fast, file);
     } catch (const OutputError &) {

@@ -1,9 +1,9 @@
 /// Emitters: point, area, constant, envmap.
 
 #include "../log.h"
-#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
+#include "scene/limits.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 /// Films and reconstruction filters.
 
-#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
+#include "scene/limits.h"
 
 #include <algorithm>
 #include <fmt/format.h>

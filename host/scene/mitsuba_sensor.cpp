@@ -1,9 +1,9 @@
 /// Sensors (perspective, thinlens) and samplers.
 
 #include "../log.h"
-#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
+#include "scene/limits.h"
 
 #include <algorithm>
 #include <cmath>

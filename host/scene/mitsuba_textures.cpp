@@ -1,9 +1,9 @@
 /// Textures, and the colours that may stand where a texture can.
 
 #include "../log.h"
-#include "limits.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
+#include "scene/limits.h"
 
 #include <cmath>
 #include <fmt/core.h>

@@ -108,11 +108,12 @@ void check_size(ProbeDevice &device, int film, double bar, Checks &checks) {
         flat.frame =
             random_camera(random, film, random.between(is_narrow ? 0.01 : 10, is_narrow ? 1 : 70),
                           camera % 2 == 0 ? 0.2 : 0);
+        const int visible = film / 2; // the crop window
         std::vector<float> in;
         const std::size_t count = device.count(1e6 / cameras);
         for (std::size_t i = 0; i < count; ++i) {
-            in.push_back(std::floor(random.unit() * static_cast<float>(film / 2)));
-            in.push_back(std::floor(random.unit() * static_cast<float>(film / 2)));
+            in.push_back(std::floor(random.unit() * static_cast<float>(visible)));
+            in.push_back(std::floor(random.unit() * static_cast<float>(visible)));
             in.push_back(static_cast<float>(random.bits() % 64));
         }
         compare(flat.frame, in, device.run_scene("probe_camera", flat, in, 3, 12),

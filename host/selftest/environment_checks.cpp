@@ -129,7 +129,8 @@ private:
         return weight * solid_angle(p.row) / total_ * rows_ * width_ / (2 * pi * pi * p.sine);
     }
     [[nodiscard]] double field(int row, int column, int k) const {
-        return flat_.env_texels[static_cast<std::size_t>(4 * (row * (width_ + 1) + column) + k)];
+        const int place = row * (width_ + 1) + column;
+        return flat_.env_texels[4 * static_cast<std::size_t>(place) + static_cast<std::size_t>(k)];
     }
     [[nodiscard]] double between(const Place &p, int k) const {
         const double upper =

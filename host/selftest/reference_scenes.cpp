@@ -89,7 +89,8 @@ Mean render_mean(const Scene &scene, RenderOptions how, int spp) {
         sum += double{result.image.f32[i]};
         variance += double{result.variance.f32[i]};
     }
-    const double pixels = static_cast<double>(result.image.f32.size() / channels);
+    const std::size_t count = result.image.f32.size() / channels;
+    const auto pixels = static_cast<double>(count);
     return {sum / pixels, std::sqrt(variance) / pixels};
 }
 
