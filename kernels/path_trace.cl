@@ -157,7 +157,7 @@ CLR_INLINE void paths_roulette(const SceneData *scene, Paths *p) {
 #endif
 
 /* Where a ray ends: only camera rays may be clipped. */
-#if HAS_CLIP || HAS_FAR_CAMERA || INTEGRATOR == 1
+#if HAS_CLIP || FAR_CAMERA || INTEGRATOR == 1
 #define CLIP_END(p) ((p)->t_max)
 #else
 #define CLIP_END(p) real_of(INFINITY)
@@ -266,11 +266,11 @@ CLR_INLINE void paths_step(const SceneData *scene, Paths *p) {
     PROFILE_ADD(scene->counts, PROFILE_STEPS, 1u);
     Hit hit = scene_closest(scene, p->o, p->d, p->self, CLIP_END(p), p->alive);
     mask_l met = p->alive & ige(hit.prim, int_of(0));
-#if HAS_CLIP || HAS_FAR_CAMERA || INTEGRATOR == 1
+#if HAS_CLIP || FAR_CAMERA || INTEGRATOR == 1
     p->t_max = real_of(INFINITY);
 #endif
     mask_l restarted = no_lanes();
-#if HAS_FAR_CAMERA
+#if FAR_CAMERA
     restarted = p->alive & ~met & gt(p->ahead, real_of(0.0f));
     p->ahead = pick(restarted, camera_next_leg(p->ahead), pick(p->alive, real_of(0.0f), p->ahead));
     p->o = v3_pick(restarted, v3_mad(p->d, -p->ahead, p->start), p->o);
@@ -328,7 +328,7 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);
-#if HAS_FAR_CAMERA
+#if FAR_CAMERA
     p.ahead = p.start_t_max = p.t_max;
     p.start = p.o;
 #endif
@@ -397,7 +397,9 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
     ItemCounters uncounted = {0u, 0u, 0u, 0u};
     BlockSums block;
     uint renderings = 1u;
-#if HAS_VARIANCE
+#if !VARIANCE
+    (void)control;
+#else
     const uint all_tiles = tiles * ((frame->height + TILE - 1u) / TILE);
     const uint group = frame->control_group > 0u ? tile / frame->control_group : 0u;
     if (frame->control_group > 0u &&
@@ -417,7 +419,7 @@ __kernel void path_trace(__global const FrameData *frame, __global const Sphere 
             if (rendering == 0u)
                 film_add(&scene, film, work.x, work.y - (int)film_row, (int)(film_end - film_row),
                          samples, &block);
-#if HAS_VARIANCE
+#if VARIANCE
             if (renderings > 1u)
                 control_add(&scene, control + (size_t)group * TILE_PIXELS, &block,
                             rendering == 0u ? 1.0f : -1.0f);

@@ -131,7 +131,7 @@ DepthRange depth_range(const Shape &shape, const glm::dvec3 &eye, const glm::dve
 /// The depth at which camera rays start, in scene units: that of the nearest shape, so that neither
 /// the eye's place nor the direction loses pixels to rounding, however far away the eye is. Where a
 /// `narrow` angle is seen, and some shape begins long before the middle of the scene, rays come in
-/// legs (HAS_FAR_CAMERA) to a start before that middle.
+/// legs (FAR_CAMERA) to a start before that middle.
 double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
     const Scene &scene = work.scene;
     const glm::dvec3 eye(scene.sensor.to_world[3]);
@@ -149,7 +149,7 @@ double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
         scene.integrator.kind == IntegratorKind::depth ||
         scene.sensor.near_clip.value_or(0) > middle - reach * unit)
         return before_all;
-    work.flat.config.HAS_FAR_CAMERA = 1;
+    work.flat.config.FAR_CAMERA = 1;
     return middle - reach * unit;
 }
 

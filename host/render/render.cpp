@@ -156,7 +156,7 @@ void Rendering::configure() {
     config.TILE = tile_of(entry_, config);
     config.SAMPLER = options_.independent_sampler ? 1 : 0;
     config.PROFILE = options_.profile != nullptr ? 1 : 0;
-    config.HAS_VARIANCE = options_.with_variance ? 1 : 0;
+    config.VARIANCE = options_.with_variance ? 1 : 0;
     FrameData &frame = flat_.frame;
     frame.seed = options_.seed;
     frame.total_samples = static_cast<uint>(spp_);

@@ -59,7 +59,7 @@ typedef struct {
     clr_real planar_rim; /* hits of planars up to these |a|, |b| or radius are not at the outline */
     clr_real lens_share; /* of the offset on the lens that is left at the start of a ray */
     clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
-    clr_real first_leg;     /* HAS_FAR_CAMERA: depth of the start, from the near clip plane */
+    clr_real first_leg;     /* FAR_CAMERA: depth of the start, from the near clip plane */
     clr_real start_x[3];    /* a pixel's width there */
     clr_real pad0;
     clr_real start_y[3];

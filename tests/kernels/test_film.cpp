@@ -24,7 +24,7 @@ constexpr float highest_word = 0x1p96f;
 cl::Kernel build_probe(const ClTestDevice &device, const char *name) {
     KernelConfig config;
     config.LANES = 8;
-    config.HAS_VARIANCE = 1;
+    config.VARIANCE = 1;
     return {device.build("probes/film_probes.cl", config.build_options()), name};
 }
 
