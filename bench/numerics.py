@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """bench/numerics.py: the pictures of docs/numerics.md, by clrender (left) and Mitsuba 3 (right).
 
-Writes docs/images/numerics_NAME.png for each scene below: objects of 2 to 50 centimetres on a sphere
-of the Earth's size, in metres; the same objects seen from a thousand kilometres away; and the inside
+Writes docs/images/numerics_NAME.png for each scene below: objects from .02 units on, on a sphere of
+radius 10^8; the same objects seen from 10^6 units away by a narrow angle; and the inside
 of a closed box under a bright sky, which has to be black. Wants what `scripts/bench --install-peers`
 makes, or CLRENDER_PEER_PYTHON.
 """
@@ -16,6 +16,7 @@ import tempfile
 from programs import CLRENDER, ROOT, peer_python, run
 
 SIZE = (360, 270)
+BOX = "1241 -456 777"  # the middle of the closed box
 IMAGES = ROOT / "docs" / "images"
 
 # Renders a scene with Mitsuba and joins both pictures. Arguments: scene, clrender's EXR, result.
@@ -88,19 +89,20 @@ def sealed_box():
     turns = [("y", 0), ("y", 90), ("y", 180), ("y", 270), ("x", 90), ("x", -90)]
     walls = [f"""<shape type="rectangle">{transform(
         '<translate z="-1"/>', f'<rotate {axis}="1" angle="{angle}"/>',
-        '<rotate x=".8" y=".6" angle="31"/>')}{surface}</shape>""" for axis, angle in turns]
+        '<rotate x=".8" y=".6" angle="31"/>', f'<translate value="{BOX}"/>')}{surface}</shape>"""
+             for axis, angle in turns]
     return "".join(walls) + '<emitter type="constant"><rgb name="radiance" value="1e5"/></emitter>'
 
 
 def scenes():
-    earth = 6.4e6
-    planet = sphere((0, -earth, 0), earth, diffuse(".35 .4 .3"))
+    radius = 1e8
+    planet = sphere((0, -radius, 0), radius, diffuse(".35 .4 .3"))
     floor = f"""<shape type="rectangle">{transform('<scale value="20"/>',
         '<rotate x="1" angle="-90"/>')}{diffuse(".35 .4 .3")}</shape>"""
     return {
         "planet": sensor("0 1.2 4", "0 .15 0", 38.0) + planet + objects(),
         "far_camera": far_camera(1e6) + floor + objects(),
-        "sealed_box": sensor(".1 0 0", "-1 -.6 -.4", 100.0) + sealed_box(),
+        "sealed_box": sensor(BOX, "1240 -457 776", 100.0) + sealed_box(),
     }
 
 
