@@ -53,7 +53,6 @@ void add_mesh(const Shape &shape, double weight, std::vector<Part> &parts) {
 std::vector<Part> parts_of(const Scene &scene) {
     struct Whole {
         const Shape *shape;
-        Box box;
         double size;
     };
     std::vector<Whole> wholes;
@@ -63,7 +62,7 @@ std::vector<Part> parts_of(const Scene &scene) {
         const double size = diagonal(box);
         if (box.empty() || !(size > 0) || !std::isfinite(size))
             continue;
-        wholes.push_back({&shape, box, size});
+        wholes.push_back({&shape, size});
         sizes.push_back(size);
     }
     if (wholes.empty())
@@ -76,10 +75,12 @@ std::vector<Part> parts_of(const Scene &scene) {
     for (const Whole &whole : wholes) {
         const double share = whole.shape->emitter == none ? 1 : share_of_emitters;
         const double weight = share / std::max(whole.size, least);
+        // A sphere's radius is a cube root, which is not rounded alike at every scale: its center
+        // does not go by its box.
         if (whole.shape->kind == ShapeKind::mesh)
             add_mesh(*whole.shape, weight, parts);
         else
-            parts.push_back({(whole.box.low + whole.box.high) * 0.5, whole.size, weight});
+            parts.push_back({glm::dvec3(whole.shape->to_world[3]), whole.size, weight});
     }
     return parts;
 }

@@ -36,7 +36,6 @@ RenderResult render(Profile *profile, int lanes = 0, bool brute_force = false) {
     options.lanes = lanes;
     options.brute_force = brute_force;
     options.profile = profile;
-    options.with_variance = true;
     return render_scene(scene_from_xml(mesh_scene), options);
 }
 
