@@ -85,7 +85,7 @@ TEST_CASE("in double precision the functions are right to a few units in the las
                                  glm::dot(s, n), glm::dot(t, n)})
             frame.add(off);
     }
-    CHECK(sincos.value() < 4e-16);
+    CHECK(sincos.value() < 1e-15);
     CHECK(turn.value() < 2e-16);
     CHECK(cap.value() < 1e-14); // of d^2 - r^2, down to a hundredth
     CHECK(frame.value() < 1e-15);

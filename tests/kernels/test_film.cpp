@@ -83,7 +83,7 @@ FilmPixel add_pixel_samples(const ClTestDevice &device, cl_uint samples, float f
 
 } // namespace
 
-TEST_CASE("values are added to the film as integers, exactly and in any order", "[oclgrind]") {
+TEST_CASE("values are added to the film as integers, exactly and in any order") {
     const ClTestDevice device;
     std::vector<float> values = {0.0f,
                                  -0.0f,
@@ -115,7 +115,7 @@ TEST_CASE("values are added to the film as integers, exactly and in any order", 
     CHECK((add_up(device, {-0x1p-96f}).value(0) == -1));
 }
 
-TEST_CASE("values that the film cannot hold are clamped and counted", "[oclgrind]") {
+TEST_CASE("values that the film cannot hold are clamped and counted") {
     const ClTestDevice device;
     constexpr float infinity = std::numeric_limits<float>::infinity();
     const Integer limit = integer_of(CLR_FILM_LIMIT);

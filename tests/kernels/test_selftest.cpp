@@ -119,7 +119,7 @@ TEST_CASE("device functions: spheres", "[oclgrind][stress]") {
     expect(check_spheres);
 }
 
-TEST_CASE("device functions: rectangles and disks", "[oclgrind][stress]") {
+TEST_CASE("device functions: rectangles and disks", "[stress]") {
     expect(check_planars);
 }
 
@@ -127,7 +127,7 @@ TEST_CASE("device functions: camera rays", "[oclgrind][stress]") {
     expect(check_camera);
 }
 
-TEST_CASE("device functions: reconstruction filters", "[oclgrind][stress]") {
+TEST_CASE("device functions: reconstruction filters", "[stress]") {
     expect(check_filters);
 }
 
