@@ -15,7 +15,9 @@ std::size_t FlatScene::bytes() const {
 
 FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
     Flattening work{scene, options};
-    work.flat.placement = choose_placement(scene);
+    for (const Shape &shape : scene.shapes)
+        work.boxes.push_back(shape_box(shape));
+    work.flat.placement = choose_placement(scene, work.boxes);
     flatten_materials(work);
     // Textured lights need surface coordinates too, which the shapes have to know.
     for (const Emitter &emitter : scene.emitters)

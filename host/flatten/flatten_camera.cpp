@@ -1,7 +1,6 @@
 #include "film_filter.h"
 #include "flatten_parts.h"
 #include "scene/limits.h"
-#include "scene/shape_bounds.h"
 #include "shared/film_filter.h"
 
 #include <algorithm>
@@ -18,12 +17,6 @@ constexpr int max_border = CLR_LEAST_TILE / 2;
 
 /// Mitsuba's `depth` measures from the near plane, stated or not.
 constexpr double depth_near_clip = 0.01;
-
-void store(clr_real (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<clr_real>(v.x);
-    out[1] = static_cast<clr_real>(v.y);
-    out[2] = static_cast<clr_real>(v.z);
-}
 
 /// Half the extent of the image plane at distance 1, along x and y.
 glm::dvec2 image_plane_half_size(const Sensor &sensor, const FilmSettings &film) {
@@ -109,12 +102,12 @@ struct DepthRange {
     double nearest, farthest;
 };
 
-DepthRange depth_range(const Shape &shape, const glm::dvec3 &eye, const glm::dvec3 &axis) {
+DepthRange depth_range(const Shape &shape, const Box &box, const glm::dvec3 &eye,
+                       const glm::dvec3 &axis) {
     if (shape.kind == ShapeKind::sphere) {
         const double middle = glm::dot(glm::dvec3(shape.to_world[3]) - eye, axis);
         return {middle - sphere_radius(shape), middle + sphere_radius(shape)};
     }
-    const Box box = shape_box(shape);
     DepthRange range{std::numeric_limits<double>::infinity(),
                      -std::numeric_limits<double>::infinity()};
     for (int i = 0; i < 8 && !box.empty(); ++i) {
@@ -137,8 +130,8 @@ double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
     const glm::dvec3 eye(scene.sensor.to_world[3]);
     const double unit = 1 / work.flat.placement.scale;
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Shape &shape : scene.shapes) {
-        const DepthRange range = depth_range(shape, eye, axis);
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const DepthRange range = depth_range(scene.shapes[i], work.boxes[i], eye, axis);
         if (range.farthest > 0)
             nearest = std::min(nearest, range.nearest);
     }

@@ -17,12 +17,6 @@ constexpr double pi = std::numbers::pi;
 /// light samples: their powers cannot be compared where the scene has no natural bounds.
 constexpr double least_share = 0.25;
 
-void store(clr_real (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<clr_real>(v.x);
-    out[1] = static_cast<clr_real>(v.y);
-    out[2] = static_cast<clr_real>(v.z);
-}
-
 /// As float32 has it. What the light tree is made of is rounded in either precision, so that both
 /// have the same tree, and choose the same lights.
 double in_single(clr_real value) {

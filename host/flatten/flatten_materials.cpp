@@ -7,11 +7,6 @@ namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
-void store(clr_real (&out)[3], const Rgb &v) {
-    for (int c = 0; c < 3; ++c)
-        out[c] = static_cast<clr_real>(v[c]);
-}
-
 /// Byte `channel` of pixel `at`, grey images giving the same for all.
 uint byte_of(const Image &image, std::size_t at, int channel) {
     const int channels = image.channels;

@@ -27,13 +27,10 @@ struct VertexData {
     bool uvs = false;
 };
 
-/// Vertices that splitting a mesh's triangles adds, behind the mesh's own.
-struct AddedVertices {
-    struct Vertex {
-        std::array<std::uint32_t, 3> parent; ///< corners of the mesh's triangle
-        glm::dvec3 weights;
-    };
-    std::vector<Vertex> vertices;
+/// A vertex that splitting a mesh's triangle adds, behind the mesh's own.
+struct AddedVertex {
+    std::array<std::uint32_t, 3> parent; ///< corners of the mesh's triangle
+    glm::dvec3 weights;
 };
 
 glm::dvec3 corner_uv(const Mesh &mesh, std::uint32_t vertex, int corner) {
@@ -46,22 +43,22 @@ glm::dvec3 corner_uv(const Mesh &mesh, std::uint32_t vertex, int corner) {
 /// Appends the triangles that a huge one is split into.
 void append_split(const std::array<std::uint32_t, 3> &parent,
                   const std::array<glm::dvec3, 3> &corners, uint first_added, bool by_vertex,
-                  AddedVertices &added, FlatScene &flat) {
+                  std::vector<AddedVertex> &added, FlatScene &flat) {
     for (const SplitTriangle &part : split_triangle(corners)) {
         flat.corners.push_back(
             {Vec3(part[0].position), Vec3(part[1].position), Vec3(part[2].position)});
         for (const SplitVertex &vertex : part) {
             if (!by_vertex)
                 continue;
-            flat.triangles.push_back(first_added + static_cast<uint>(added.vertices.size()));
-            added.vertices.push_back({parent, vertex.weights});
+            flat.triangles.push_back(first_added + static_cast<uint>(added.size()));
+            added.push_back({parent, vertex.weights});
         }
     }
 }
 
 /// Normals and coordinates of the vertices: the mesh's own, then the added ones, between those of
 /// their parents' corners.
-void append_vertex_data(const Shape &shape, const Mesh &mesh, const AddedVertices &added,
+void append_vertex_data(const Shape &shape, const Mesh &mesh, const std::vector<AddedVertex> &added,
                         VertexData wanted, FlatScene &flat) {
     const std::size_t own = mesh.positions.size();
     if (wanted.normals) {
@@ -71,12 +68,12 @@ void append_vertex_data(const Shape &shape, const Mesh &mesh, const AddedVertice
             return glm::normalize(inverse_transpose * glm::dvec3(mesh.normals[vertex])) *
                    (shape.flip_normals ? -1.0 : 1.0);
         };
-        for (std::size_t i = 0; i < own + added.vertices.size(); ++i) {
+        for (std::size_t i = 0; i < own + added.size(); ++i) {
             Vec3 n{missing};
             if (!mesh.normals.empty() && i < own) {
                 n = Vec3(normal_of(static_cast<std::uint32_t>(i)));
             } else if (!mesh.normals.empty()) {
-                const auto &[parent, w] = added.vertices[i - own];
+                const auto &[parent, w] = added[i - own];
                 n = Vec3(normal_of(parent[0]) * w.x + normal_of(parent[1]) * w.y +
                          normal_of(parent[2]) * w.z);
             }
@@ -89,7 +86,7 @@ void append_vertex_data(const Shape &shape, const Mesh &mesh, const AddedVertice
         const Vec2 uv = mesh.uvs.empty() ? Vec2(missing) : Vec2(mesh.uvs[i]);
         flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
     }
-    for (const auto &[parent, w] : added.vertices) {
+    for (const auto &[parent, w] : added) {
         const glm::dvec3 uv = corner_uv(mesh, parent[0], 0) * w.x +
                               corner_uv(mesh, parent[1], 1) * w.y +
                               corner_uv(mesh, parent[2], 2) * w.z;
@@ -115,7 +112,7 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
     const auto first_vertex = static_cast<uint>(work.vertex_count);
     const auto first_added = first_vertex + static_cast<uint>(positions.size());
     const bool by_vertex = wanted.normals || wanted.uvs;
-    AddedVertices added;
+    std::vector<AddedVertex> added;
     for (const auto &t : mesh.triangles) {
         const std::array<std::uint32_t, 3> turned = {t[0], t[second], t[third]};
         const TriangleCorners corners = {positions[turned[0]], positions[turned[1]],
@@ -132,7 +129,7 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
     }
     flat.shape_of.resize(flat.corners.size(), shape_number);
     append_vertex_data(shape, mesh, added, wanted, flat);
-    work.vertex_count += positions.size() + added.vertices.size();
+    work.vertex_count += positions.size() + added.size();
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 /// The steps of flatten(), in their order, and what they tell each other.
 
 #include "flat_scene.h"
+#include "scene/shape_bounds.h"
 
 #include <map>
 
@@ -17,10 +18,12 @@ struct Flattening {
     const Scene &scene;
     const FlattenOptions &options;
     FlatScene flat{};
-    std::map<int, uint> texture_index{};               ///< by Scene::textures
-    std::map<int, uint> material_index{};              ///< by Scene::bsdfs, not twosided
-    std::map<int, uint> sides_of_bsdf{};               ///< by Scene::bsdfs, as ShapeInfo::materials
-    std::map<int, uint> primitive_of_shape{};          ///< by Scene::shapes, spheres and planars
+    std::vector<Box> boxes{};                 ///< by Scene::shapes, in world coordinates
+    std::map<int, uint> texture_index{};      ///< by Scene::textures
+    std::map<int, uint> material_index{};     ///< by Scene::bsdfs, not twosided
+    std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
+    std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
+    std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none
     std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
     bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
@@ -32,7 +35,8 @@ struct Flattening {
 /// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
 /// inverse of their sizes, and the unit is their median distance from it. Neither depends on the
 /// camera, nor do they move for something that is far away or huge.
-Placement choose_placement(const Scene &scene);
+/// `boxes` are those of the scene's shapes.
+Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
 void flatten_materials(Flattening &work);

@@ -27,6 +27,17 @@ double planar_reach(const glm::dvec3 &du, const glm::dvec3 &dv, const glm::dvec3
     return std::max({size.x, size.y, size.z}) + glm::length(du) + glm::length(dv);
 }
 
+/// The vectors of the plane of du and dv with ra . du = rb . dv = 1, ra . dv = rb . du = 0.
+struct DualBasis {
+    glm::dvec3 ra, rb;
+};
+
+DualBasis dual_basis(const glm::dvec3 &du, const glm::dvec3 &dv) {
+    const glm::dvec3 across = glm::cross(du, dv);
+    const double area2 = glm::dot(across, across);
+    return {glm::cross(dv, across) / area2, glm::cross(across, du) / area2};
+}
+
 Planar flatten_planar(const Shape &shape, const Placement &placement) {
     Planar p{};
     const double scale = placement.scale;
@@ -48,10 +59,9 @@ Planar flatten_planar(const Shape &shape, const Placement &placement) {
     const double wider = planar_wider * planar_reach(du, dv, origin);
     const double stretch_u = 1 + wider / glm::length(du);
     const double stretch_v = 1 + wider / glm::length(dv);
-    // The dual basis within the plane.
-    const double area2 = glm::dot(across, across);
-    store(p.ra, glm::cross(dv, across) / area2 / stretch_u);
-    store(p.rb, glm::cross(across, du) / area2 / stretch_v);
+    const DualBasis dual = dual_basis(du, dv);
+    store(p.ra, dual.ra / stretch_u);
+    store(p.rb, dual.rb / stretch_v);
     const glm::dvec3 half = glm::abs(du) * stretch_u + glm::abs(dv) * stretch_v;
     p.half_x = static_cast<clr_real>(half.x);
     p.half_y = static_cast<clr_real>(half.y);
@@ -113,31 +123,28 @@ std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_i
 } // namespace
 
 void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placement) {
-    const glm::dvec3 du = glm::dvec3(shape.to_world[0]) * placement.scale;
-    const glm::dvec3 dv = glm::dvec3(shape.to_world[1]) * placement.scale;
-    const glm::dvec3 across = glm::cross(du, dv);
+    const DualBasis dual = dual_basis(glm::dvec3(shape.to_world[0]) * placement.scale,
+                                      glm::dvec3(shape.to_world[1]) * placement.scale);
     const glm::dvec3 origin = placement.exact(glm::dvec3(shape.to_world[3]));
-    const glm::dvec3 ra = glm::cross(dv, across) / glm::dot(across, across);
-    const glm::dvec3 rb = glm::cross(across, du) / glm::dot(across, across);
     for (int c = 0; c < 3; ++c) {
-        out[c] = static_cast<clr_real>(ra[c]);
-        out[4 + c] = static_cast<clr_real>(rb[c]);
+        out[c] = static_cast<clr_real>(dual.ra[c]);
+        out[4 + c] = static_cast<clr_real>(dual.rb[c]);
     }
-    out[3] = static_cast<clr_real>(-glm::dot(ra, origin));
-    out[7] = static_cast<clr_real>(-glm::dot(rb, origin));
+    out[3] = static_cast<clr_real>(-glm::dot(dual.ra, origin));
+    out[7] = static_cast<clr_real>(-glm::dot(dual.rb, origin));
 }
 
 void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
     FlatScene &flat = work.flat;
     for (const std::size_t i : order_planars(work, rectangles_in_bvh, flat.config)) {
         const Shape &shape = work.scene.shapes[i];
-        work.primitive_of_shape[static_cast<int>(i)] = append_shape(shape, work);
+        append_lane_wise_shape(i, work);
         flat.planars.push_back(flatten_planar(shape, flat.placement));
         if (shape.kind == ShapeKind::disk)
             flat.config.HAS_DISKS = 1;
     }
     if (work.wants("PLANAR_COUNT") && flat.planars.empty()) {
-        append_no_shape(flat);
+        append_no_shape(work);
         flat.planars.emplace_back();
     }
     flat.config.PLANAR_COUNT = static_cast<int>(flat.planars.size());

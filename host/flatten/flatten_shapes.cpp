@@ -87,11 +87,11 @@ void flatten_lane_wise_spheres(Flattening &work, bool huge_only) {
     FlatScene &flat = work.flat;
     for (const std::size_t i : order_spheres(work, huge_only, flat.config)) {
         const Shape &shape = work.scene.shapes[i];
-        work.primitive_of_shape[static_cast<int>(i)] = append_shape(shape, work);
+        append_lane_wise_shape(i, work);
         flat.spheres.push_back(flatten_sphere(shape, flat.placement));
     }
     if (work.wants("SPHERE_COUNT") && flat.spheres.empty()) {
-        append_no_shape(flat);
+        append_no_shape(work);
         flat.spheres.emplace_back();
     }
     flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());

@@ -1,11 +1,7 @@
 #include "flatten_parts.h"
 
-#include "scene/shape_bounds.h"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -50,19 +46,18 @@ void add_mesh(const Shape &shape, double weight, std::vector<Part> &parts) {
 
 /// The pieces, each weighted by the inverse of its size: the smaller it is, the more precision it
 /// needs. A mesh weighs as much as a sphere of its size, wherever most of its small triangles are.
-std::vector<Part> parts_of(const Scene &scene) {
+std::vector<Part> parts_of(const Scene &scene, const std::vector<Box> &boxes) {
     struct Whole {
         const Shape *shape;
         double size;
     };
     std::vector<Whole> wholes;
     std::vector<double> sizes;
-    for (const Shape &shape : scene.shapes) {
-        const Box box = shape_box(shape);
-        const double size = diagonal(box);
-        if (box.empty() || !(size > 0) || !std::isfinite(size))
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const double size = diagonal(boxes[i]);
+        if (boxes[i].empty() || !(size > 0) || !std::isfinite(size))
             continue;
-        wholes.push_back({&shape, size});
+        wholes.push_back({&scene.shapes[i], size});
         sizes.push_back(size);
     }
     if (wholes.empty())
@@ -105,9 +100,9 @@ template <typename Value> double weighted_median(const std::vector<Part> &parts,
 
 } // namespace
 
-Placement choose_placement(const Scene &scene) {
+Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes) {
     Placement placement;
-    const std::vector<Part> parts = parts_of(scene);
+    const std::vector<Part> parts = parts_of(scene, boxes);
     if (parts.empty())
         return placement;
     for (int axis = 0; axis < 3; ++axis)

@@ -17,4 +17,11 @@ using Vec3 = glm::vec<3, clr_real, glm::defaultp>;
 /// In which differences of products of clr_real are exact, or nearly so.
 using WideReal = std::conditional_t<std::is_same_v<clr_real, float>, double, long double>;
 
+/// A vector, or a colour, as numbers of that precision.
+inline void store(clr_real (&out)[3], const glm::dvec3 &v) {
+    out[0] = static_cast<clr_real>(v.x);
+    out[1] = static_cast<clr_real>(v.y);
+    out[2] = static_cast<clr_real>(v.z);
+}
+
 } // namespace clrender::inline CLR_PRECISION

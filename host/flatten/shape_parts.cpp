@@ -1,16 +1,6 @@
 #include "shape_parts.h"
 
-#include "scene/shape_bounds.h"
-
-#include <algorithm>
-
 namespace clrender::inline CLR_PRECISION {
-
-void store(clr_real (&out)[3], const glm::dvec3 &v) {
-    out[0] = static_cast<clr_real>(v.x);
-    out[1] = static_cast<clr_real>(v.y);
-    out[2] = static_cast<clr_real>(v.z);
-}
 
 bool is_inverted(const Shape &shape) {
     const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
@@ -32,17 +22,22 @@ uint append_shape(const Shape &shape, Flattening &work) {
     return static_cast<uint>(flat.shapes.size() - 1);
 }
 
-void append_no_shape(FlatScene &flat) {
+void append_lane_wise_shape(std::size_t shape, Flattening &work) {
+    const int index = static_cast<int>(shape);
+    work.primitive_of_shape[index] = append_shape(work.scene.shapes[shape], work);
+    work.lane_wise_shapes.push_back(index);
+}
+
+void append_no_shape(Flattening &work) {
+    FlatScene &flat = work.flat;
     flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
     if (flat.config.HAS_UVS != 0)
         flat.shape_frames.insert(flat.shape_frames.end(), 9, 0.0f);
+    work.lane_wise_shapes.push_back(none);
 }
 
 const Shape &shape_of_primitive(const Flattening &work, std::size_t primitive) {
-    const auto found = std::find_if(
-        work.primitive_of_shape.begin(), work.primitive_of_shape.end(),
-        [&](const auto &entry) { return entry.second == static_cast<uint>(primitive); });
-    return work.scene.shapes[static_cast<std::size_t>(found->first)];
+    return work.scene.shapes[static_cast<std::size_t>(work.lane_wise_shapes[primitive])];
 }
 
 } // namespace clrender::inline CLR_PRECISION

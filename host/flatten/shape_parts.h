@@ -12,16 +12,17 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh);
 
 /// The shape's entry among the shape infos, with the frame that spheres need for their (u, v).
 uint append_shape(const Shape &shape, Flattening &work);
-/// The shape of a sphere without a radius, or a rectangle without a normal, which no ray meets.
-void append_no_shape(FlatScene &flat);
-/// The shape of a lane-wise primitive.
+/// The same of the next lane-wise primitive, which has the number of its entry.
+void append_lane_wise_shape(std::size_t shape, Flattening &work);
+/// A lane-wise primitive that no ray meets: a sphere without a radius, a rectangle without a
+/// normal.
+void append_no_shape(Flattening &work);
+/// The shape of a lane-wise primitive that has one.
 const Shape &shape_of_primitive(const Flattening &work, std::size_t primitive);
 
 /// True where the normal points the other way than the shape's own.
 bool is_inverted(const Shape &shape);
 /// PrimitiveRecord::frame of a rectangle or disk.
 void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placement);
-/// A vector as numbers of the flat scene's precision.
-void store(clr_real (&out)[3], const glm::dvec3 &v);
 
 } // namespace clrender::inline CLR_PRECISION

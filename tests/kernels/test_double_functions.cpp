@@ -32,18 +32,9 @@ std::vector<double> run_in_double(const ClTestDevice &device, const std::vector<
     return device.download<double>(out, out_size * count);
 }
 
-/// The largest of the differences, infinite where one is not a number.
-class Worst {
-public:
-    void add(long double difference) {
-        const auto size = static_cast<double>(std::abs(difference));
-        worst_ = size <= worst_ ? worst_ : size >= 0 ? size : INFINITY;
-    }
-    [[nodiscard]] double value() const { return worst_; }
-
-private:
-    double worst_ = 0;
-};
+double size_of(long double difference) {
+    return static_cast<double>(std::abs(difference));
+}
 
 } // namespace
 
@@ -67,25 +58,26 @@ TEST_CASE("in double precision the functions are right to a few units in the las
                    distance2, distance2 * uniform(random) * 0.99, n.x, n.y, n.z, 1, 1, 0.5, 0.5});
     }
 
-    Worst sincos, turn, cap, frame;
+    selftest::Worst sincos, turn, cap, frame;
     const std::vector<double> out = run_in_double(device, in, in_size, out_size);
     for (std::size_t i = 0; i < count; ++i) {
         const double *a = &in[in_size * i], *b = &out[out_size * i];
         const long double angle = two_pi * a[0];
-        sincos.add(std::sin(angle) - b[0]);
-        sincos.add(std::cos(angle) - b[1]);
-        turn.add(std::atan2(static_cast<long double>(a[1]), static_cast<long double>(a[2])) /
-                     two_pi -
-                 b[2]);
+        sincos.see(size_of(std::sin(angle) - b[0]));
+        sincos.see(size_of(std::cos(angle) - b[1]));
+        turn.see(size_of(
+            std::atan2(static_cast<long double>(a[1]), static_cast<long double>(a[2])) / two_pi -
+            b[2]));
         const long double sine2 = static_cast<long double>(a[4]) / a[3];
-        cap.add(b[3] / (1 - std::sqrt(1 - sine2)) - 1);
+        cap.see(size_of(b[3] / (1 - std::sqrt(1 - sine2)) - 1));
         const glm::dvec3 n(a[5], a[6], a[7]);
         const glm::dvec3 s(b[4], b[5], b[6]), t(b[7], b[8], b[9]);
         for (const double off : {glm::dot(s, s) - 1, glm::dot(t, t) - 1, glm::dot(s, t),
                                  glm::dot(s, n), glm::dot(t, n)})
-            frame.add(off);
+            frame.see(std::abs(off));
     }
-    CHECK(sincos.value() < 1e-15);
+    // Oclgrind takes sine and cosine from a library of its own.
+    CHECK(sincos.value() < (small_tests() ? 1e-15 : 4e-16));
     CHECK(turn.value() < 2e-16);
     CHECK(cap.value() < 1e-14); // of d^2 - r^2, down to a hundredth
     CHECK(frame.value() < 1e-15);
