@@ -357,37 +357,15 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
    the sample blocks [first_block, end_block). The film holds the rows [film_row, film_end) of the
    picture, all that the launch reaches, and item_counters those of the tiles from first_tile on;
    `control` has the pixels of all control tiles. */
-__kernel void path_trace(__global const FrameData *frame, __global const Sphere *spheres,
-                         __global const SphereTest *sphere_tests, __global const Planar *planars,
-                         __global const PrimitiveRecord *records, __global const BvhNode *nodes,
-                         __global const TriangleBlock *triangle_blocks,
-                         __global const SphereBlock *sphere_blocks, __global const uint *triangles,
-                         __global const clr_real *normals, __global const clr_real *uvs,
-                         __global const uint *shape_of, __global const ShapeInfo *shapes,
-                         __global const clr_real *shape_frames, __global const Material *materials,
-                         __global const EmitterInfo *emitters, __global const Light *lights,
-                         __global const LightTriangle *light_triangles,
-                         __global const LightNode *light_nodes,
-                         __global const TextureInfo *textures, __global const uint *texels_u8,
-                         __global const clr_real *texels_f32, __global const clr_real *decode,
-                         __global const clr_real *env_texels, __global const clr_real *env_cdf,
-                         __global const uint *env_guide, __global const clr_real *filter,
-                         __global FilmPixel *film, __global ItemCounters *item_counters,
+__kernel void path_trace(SCENE_PARAMETERS, __global FilmPixel *film,
+                         __global ItemCounters *item_counters,
                          __global ControlPixel *control PROFILE_BUFFER, uint first_item,
                          uint item_count, uint first_block, uint end_block, uint colour,
                          uint stride, uint film_row, uint film_end, uint first_tile) {
     if (get_global_id(0) >= item_count)
         return;
     PROFILE_BEGIN(counts);
-    SceneData scene = {frame,           spheres,       sphere_tests,
-                       planars,         records,       nodes,
-                       triangle_blocks, sphere_blocks, triangles,
-                       normals,         uvs,           shape_of,
-                       shapes,          shape_frames,  materials,
-                       emitters,        lights,        light_triangles,
-                       light_nodes,     textures,      texels_u8,
-                       texels_f32,      decode,        env_texels,
-                       env_cdf,         env_guide,     filter PROFILE_COUNTS};
+    const SceneData scene = SCENE_DATA;
     const uint dealt = (uint)((ulong)get_global_id(0) * stride % item_count);
     Work work = tile_of_item(frame, first_item + dealt, colour);
     const uint tiles = (frame->width + TILE - 1u) / TILE;

@@ -7,7 +7,7 @@
 namespace clrender::inline CLR_PRECISION {
 
 /// Bytes of the largest of the arrays that are uploaded.
-std::size_t largest_array_bytes(FlatScene &flat);
+std::size_t largest_array_bytes(const FlatScene &flat);
 
 class DeviceScene {
 public:

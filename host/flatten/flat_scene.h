@@ -7,6 +7,7 @@
 #include "generality.h"
 #include "scene/scene.h"
 #include "shared/launch_data.h"
+#include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
 
 #include <array>
@@ -28,38 +29,17 @@ struct Placement {
 /// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
 using TriangleCorners = std::array<Vec3, 3>;
 
-/// Names follow the kernel's arguments (kernels/scene.clh says what each array holds).
+/// Its arrays are those of scene_buffers.def, which says what each holds.
 struct FlatScene {
     FrameData frame{};
     Placement placement;
-    std::vector<Sphere> spheres;
-    std::vector<SphereTest> sphere_tests;
-    std::vector<Planar> planars;
-    std::vector<PrimitiveRecord> records;
-    Bvh bvh;
-    std::vector<uint> triangles;
-    std::vector<clr_real> normals;
-    std::vector<clr_real> uvs;
-    std::vector<uint> shape_of;
-    std::vector<ShapeInfo> shapes;
-    std::vector<clr_real> shape_frames;
-    std::vector<Material> materials;
-    std::vector<EmitterInfo> emitters;
-    std::vector<Light> lights;
-    std::vector<LightTriangle> light_triangles;
-    std::vector<LightNode> light_nodes;
-    std::vector<TextureInfo> textures;
-    std::vector<uint> texels_u8;
-    std::vector<clr_real> texels_f32;
-    std::vector<clr_real> decode;
-    std::vector<clr_real> env_texels;
-    std::vector<clr_real> env_cdf;
-    std::vector<uint> env_guide;
-    std::vector<clr_real> filter;
+#define CLR_BUFFER_ARRAY(type, name, meaning) std::vector<type> name;
+    CLR_SCENE_BUFFERS(CLR_BUFFER_ARRAY)
+#undef CLR_BUFFER_ARRAY
     /// All but LANES, TILE, SAMPLER and PROFILE, which the render decides.
     KernelConfig config;
     std::size_t triangle_count = 0;
-    /// What build_hierarchy() makes `bvh` of.
+    /// What build_hierarchy() makes the tree of.
     std::vector<TriangleCorners> corners;
     std::vector<BvhSphere> bvh_spheres;
 
@@ -68,6 +48,18 @@ struct FlatScene {
     }
     [[nodiscard]] std::size_t bytes() const;
 };
+
+/// Calls `take` with each array of a scene, in the order of the kernels' arguments.
+template <class Flat, class Take> void for_each_array(Flat &flat, Take take) {
+#define CLR_BUFFER_TAKE(type, name, meaning) take(flat.name);
+    CLR_SCENE_BUFFERS(CLR_BUFFER_TAKE)
+#undef CLR_BUFFER_TAKE
+}
+
+/// Bytes of an array's elements.
+template <class T> std::size_t bytes_of(const std::vector<T> &array) {
+    return array.size() * sizeof(T);
+}
 
 /// What the command line says of the picture.
 struct FlattenOptions {

@@ -3,14 +3,9 @@
 namespace clrender::inline CLR_PRECISION {
 
 std::size_t FlatScene::bytes() const {
-    const auto size = [](const auto &...arrays) {
-        return ((arrays.size() * sizeof(*arrays.data())) + ...);
-    };
-    return sizeof(frame) + size(spheres, sphere_tests, planars, records, bvh.nodes,
-                                bvh.triangle_blocks, bvh.sphere_blocks, triangles, normals, uvs,
-                                shape_of, shapes, shape_frames, materials, emitters, lights,
-                                light_triangles, light_nodes, textures, texels_u8, texels_f32,
-                                decode, env_texels, env_cdf, env_guide, filter);
+    std::size_t bytes = sizeof(frame);
+    for_each_array(*this, [&](const auto &array) { bytes += bytes_of(array); });
+    return bytes;
 }
 
 FlatScene flatten(const Scene &scene, const FlattenOptions &options) {

@@ -236,15 +236,17 @@ void flatten_shapes(Flattening &work) {
 void build_hierarchy(FlatScene &flat) {
     if (!flat.has_hierarchy())
         return;
-    flat.bvh = build_bvh(flat.corners, flat.bvh_spheres);
+    Bvh bvh = build_bvh(flat.corners, flat.bvh_spheres);
     // An empty list in place of an empty vector would keep the memory.
     flat.corners = std::vector<TriangleCorners>();
     flat.bvh_spheres = std::vector<BvhSphere>();
-    flat.frame.triangle_blocks = static_cast<uint>(flat.bvh.triangle_blocks.size());
-    flat.frame.sphere_blocks = static_cast<uint>(flat.bvh.sphere_blocks.size());
-    if (flat.bvh.degenerate > 0)
-        log::warn(
-            fmt::format("{} triangles or spheres without area are left out", flat.bvh.degenerate));
+    flat.nodes = std::move(bvh.nodes);
+    flat.triangle_blocks = std::move(bvh.triangle_blocks);
+    flat.sphere_blocks = std::move(bvh.sphere_blocks);
+    flat.frame.triangle_blocks = static_cast<uint>(flat.triangle_blocks.size());
+    flat.frame.sphere_blocks = static_cast<uint>(flat.sphere_blocks.size());
+    if (bvh.degenerate > 0)
+        log::warn(fmt::format("{} triangles or spheres without area are left out", bvh.degenerate));
 }
 
 } // namespace clrender::inline CLR_PRECISION

@@ -61,7 +61,7 @@ std::size_t values_of(PixelFormat format, const RenderOptions &options) {
 }
 
 /// To be asked when the hierarchy is built and the configuration complete. `values` of each pixel.
-MemoryNeed need_of(FlatScene &flat, const DeviceEntry &entry, const RenderOptions &options,
+MemoryNeed need_of(const FlatScene &flat, const DeviceEntry &entry, const RenderOptions &options,
                    std::size_t values, bool to_compile) {
     const PictureTiles tiles = tiles_of(flat);
     const ControlLayout control{tiles.width, tiles.height, tiles.side, flat.frame.control_group};

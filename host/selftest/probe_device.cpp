@@ -1,5 +1,6 @@
 #include "probe_device.h"
 
+#include "device/device_scene.h"
 #include "device/kernel_program.h"
 #include "device/upload.h"
 
@@ -89,18 +90,10 @@ std::vector<float> ProbeDevice::launch(cl::Kernel &kernel, cl_uint index, const 
 std::vector<float> ProbeDevice::run_scene(const std::string &name, const FlatScene &flat,
                                           const std::vector<float> &in, std::size_t in_size,
                                           std::size_t out_size) {
-    const cl::Buffer buffers[] = {upload(std::vector{flat.frame}), upload(flat.planars),
-                                  upload(flat.emitters),           upload(flat.lights),
-                                  upload(flat.light_triangles),    upload(flat.light_nodes),
-                                  upload(flat.textures),           upload(flat.texels_u8),
-                                  upload(flat.texels_f32),         upload(flat.decode),
-                                  upload(flat.env_texels),         upload(flat.env_cdf),
-                                  upload(flat.env_guide),          upload(flat.filter),
-                                  upload(flat.shape_frames)};
+    FlatScene uploaded = flat; // DeviceScene takes the arrays away
+    const DeviceScene scene(context_, queue_, uploaded);
     cl::Kernel kernel = this->kernel(name);
-    cl_uint index = 0;
-    for (const cl::Buffer &buffer : buffers)
-        kernel.setArg(index++, buffer);
+    const cl_uint index = scene.bind(kernel);
     return launch(kernel, index, upload(in), in.size() / in_size, out_size);
 }
 

@@ -18,36 +18,13 @@
 #define PROBE_GROUP 16u
 
 #define PROBE_SCENE_PARAMETERS                                                                     \
-    __global const FrameData *frame, __global const Planar *planars,                               \
-        __global const EmitterInfo *emitters, __global const Light *lights,                        \
-        __global const LightTriangle *light_triangles, __global const LightNode *light_nodes,      \
-        __global const TextureInfo *textures, __global const uint *texels_u8,                      \
-        __global const clr_real *texels_f32, __global const clr_real *decode,                      \
-        __global const clr_real *env_texels, __global const clr_real *env_cdf,                     \
-        __global const uint *env_guide, __global const clr_real *filter,                           \
-        __global const clr_real *shape_frames, __global const clr_real *in,                        \
-        __global clr_real *out, uint count
+    SCENE_PARAMETERS, __global const clr_real *in, __global clr_real *out, uint count
 
 #define PROBE_SCENE                                                                                \
     const uint first = (uint)get_global_id(0) * LANES;                                             \
     if (first >= count)                                                                            \
         return;                                                                                    \
-    SceneData data;                                                                                \
-    data.frame = frame;                                                                            \
-    data.planars = planars;                                                                        \
-    data.emitters = emitters;                                                                      \
-    data.lights = lights;                                                                          \
-    data.light_triangles = light_triangles;                                                        \
-    data.light_nodes = light_nodes;                                                                \
-    data.textures = textures;                                                                      \
-    data.texels_u8 = texels_u8;                                                                    \
-    data.texels_f32 = texels_f32;                                                                  \
-    data.decode = decode;                                                                          \
-    data.env_texels = env_texels;                                                                  \
-    data.env_cdf = env_cdf;                                                                        \
-    data.env_guide = env_guide;                                                                    \
-    data.filter = filter;                                                                          \
-    data.shape_frames = shape_frames;                                                              \
+    const SceneData data = SCENE_DATA;                                                             \
     const SceneData *scene = &data
 
 #define PROBE_FIRST                                                                                \
