@@ -86,7 +86,6 @@ std::vector<clr_real> decode_table() {
 }
 
 Material flatten_bsdf(Flattening &work, const Bsdf &bsdf) {
-    KernelConfig &config = work.flat.config;
     Material m{};
     m.texture = m.texture2 = CLR_NONE;
     const Rgb one{1.0};
@@ -94,21 +93,18 @@ Material flatten_bsdf(Flattening &work, const Bsdf &bsdf) {
     case BsdfKind::diffuse:
         m.kind = CLR_BSDF_DIFFUSE;
         m.texture = flatten_texture(work, bsdf.reflectance, Rgb{0.5}, m.color);
-        config.HAS_DIFFUSE = 1;
         break;
     case BsdfKind::conductor:
         m.kind = bsdf.perfect_mirror ? CLR_BSDF_MIRROR : CLR_BSDF_CONDUCTOR;
         m.texture = flatten_texture(work, bsdf.specular_reflectance, one, m.color);
         store(m.eta, bsdf.eta);
         store(m.k, bsdf.k);
-        (bsdf.perfect_mirror ? config.HAS_MIRROR : config.HAS_CONDUCTOR) = 1;
         break;
     case BsdfKind::dielectric:
         m.kind = CLR_BSDF_DIELECTRIC;
         m.texture = flatten_texture(work, bsdf.specular_reflectance, one, m.color);
         m.texture2 = flatten_texture(work, bsdf.specular_transmittance, one, m.color2);
         store(m.eta, Rgb{bsdf.int_ior / bsdf.ext_ior, bsdf.ext_ior / bsdf.int_ior, 0});
-        config.HAS_DIELECTRIC = 1;
         break;
     case BsdfKind::twosided:
         break;
@@ -124,24 +120,32 @@ void share_dielectric_fields(FlatScene &flat) {
     if (first == flat.materials.end())
         return;
     const Material model = *first;
-    int &shades = flat.config.MATERIAL_SHADES;
-    for (const Material &m : flat.materials) {
-        if (!is_dielectric(m))
-            continue;
-        if (!std::equal(m.color2, m.color2 + 3, model.color2))
-            shades |= 1;
-        if (m.eta[0] != model.eta[0])
-            shades |= 2;
-    }
+    const int shades = dielectric_shades(flat.materials);
     for (Material &m : flat.materials) {
-        if ((shades & 1) == 0)
+        if ((shades & CLR_SHADES_TINTS) == 0)
             std::copy_n(model.color2, 3, m.color2);
-        if ((shades & 2) == 0 && m.kind != CLR_BSDF_CONDUCTOR)
+        if ((shades & CLR_SHADES_INDICES) == 0 && m.kind != CLR_BSDF_CONDUCTOR)
             std::copy_n(model.eta, 3, m.eta);
     }
 }
 
 } // namespace
+
+int dielectric_shades(const std::vector<Material> &materials) {
+    const Material *model = nullptr;
+    int shades = 0;
+    for (const Material &m : materials) {
+        if (m.kind != CLR_BSDF_DIELECTRIC)
+            continue;
+        if (model == nullptr)
+            model = &m;
+        if (!std::equal(m.color2, m.color2 + 3, model->color2))
+            shades |= CLR_SHADES_TINTS;
+        if (m.eta[0] != model->eta[0])
+            shades |= CLR_SHADES_INDICES;
+    }
+    return shades;
+}
 
 uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant) {
     FlatScene &flat = work.flat;
@@ -162,14 +166,8 @@ uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *consta
     if (known != work.texture_index.end())
         return known->second;
     uint offset = 0;
-    if (source->kind == TextureKind::bitmap) {
+    if (source->kind == TextureKind::bitmap)
         offset = offset_of_image(source->bitmap, work);
-        (source->bitmap->type == PixelType::u8 ? flat.config.HAS_BITMAPS_U8
-                                               : flat.config.HAS_BITMAPS_F32) = 1;
-    } else {
-        flat.config.HAS_CHECKERBOARDS = 1;
-    }
-    flat.config.HAS_UVS = 1;
     if (flat.decode.empty())
         flat.decode = decode_table();
     const auto index = static_cast<uint>(flat.textures.size());
