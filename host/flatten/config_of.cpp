@@ -162,6 +162,7 @@ KernelConfig config_of(const FlatScene &flat, const SamplingOptions &sampling,
     KernelConfig config;
     config.DOUBLE_PRECISION = CLR_DOUBLE;
     config.LANES = options.lanes;
+    config.BVH_STEP = options.bvh_step;
     config.PROFILE = options.profile ? 1 : 0;
     config.VARIANCE = options.variance ? 1 : 0;
     config.FILTER = filter_of(flat, sampling, options.splat_filters);
