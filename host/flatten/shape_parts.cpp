@@ -2,6 +2,39 @@
 
 namespace clrender::inline CLR_PRECISION {
 
+namespace {
+
+/// From this radius on, in the renderer's units, a rounding of the radius is larger than what is
+/// seen of the scene.
+constexpr double huge_radius = 64;
+
+} // namespace
+
+bool is_beside(const Shape &sphere, const Placement &placement, double least_radius) {
+    const double radius = sphere_radius(sphere) * placement.scale;
+    return radius >= least_radius &&
+           glm::length(placement.exact(glm::dvec3(sphere.to_world[3]))) < 2 * radius;
+}
+
+bool is_huge(const Shape &sphere, const Placement &placement) {
+    return is_beside(sphere, placement, huge_radius);
+}
+
+ShapeTest test_of(const Shape &shape, const Flattening &work) {
+    switch (shape.kind) {
+    case ShapeKind::sphere:
+        return work.spheres_in_bvh && !is_huge(shape, work.flat.placement) ? ShapeTest::bvh_sphere
+                                                                           : ShapeTest::sphere;
+    case ShapeKind::rectangle:
+        return work.rectangles_in_bvh ? ShapeTest::triangles : ShapeTest::planar;
+    case ShapeKind::disk:
+        return ShapeTest::planar;
+    case ShapeKind::mesh:
+        break;
+    }
+    return ShapeTest::triangles;
+}
+
 bool is_inverted(const Shape &shape) {
     const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
     return shape.flip_normals != mirrored;
