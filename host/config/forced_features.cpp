@@ -28,10 +28,9 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_BVH_SPHERES, 1),
         CLR_SETTING(HAS_VERTEX_NORMALS, 1),
         CLR_SETTING(HAS_UVS, 1),
-        CLR_SETTING(HAS_DIFFUSE, 1),
-        CLR_SETTING(HAS_MIRROR, 1),
-        CLR_SETTING(HAS_CONDUCTOR, 1),
-        CLR_SETTING(HAS_DIELECTRIC, 1),
+#define CLR_BSDF(KIND, kind, width, lobes, meaning) CLR_SETTING(HAS_##KIND, 1),
+#include "shared/bsdf_list.def"
+#undef CLR_BSDF
         CLR_SETTING(RECORD_TABLE, 0),
         CLR_SETTING(MATERIALS_IN_RECORDS, 0),
         CLR_SETTING(MATERIAL_SHADES, CLR_SHADES_TINTS | CLR_SHADES_INDICES),

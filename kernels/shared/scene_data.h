@@ -76,10 +76,13 @@ typedef struct {
 } PrimitiveRecord;
 CLR_STATIC_WORDS(PrimitiveRecord, 24);
 
-#define CLR_BSDF_DIFFUSE 0u
-#define CLR_BSDF_CONDUCTOR 1u
-#define CLR_BSDF_DIELECTRIC 2u
-#define CLR_BSDF_MIRROR 3u /* a conductor whose Fresnel factor is 1 */
+/* Material::kind. */
+enum {
+#define CLR_BSDF(KIND, kind, width, lobes, meaning) CLR_BSDF_##KIND,
+#include "shared/bsdf_list.def"
+#undef CLR_BSDF
+    CLR_BSDF_KINDS
+};
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
