@@ -49,18 +49,12 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
 void set_materials(const FlatScene &flat, KernelConfig &config) {
     for (const Material &material : flat.materials)
         switch (material.kind) {
-        case CLR_BSDF_DIFFUSE:
-            config.HAS_DIFFUSE = 1;
-            break;
-        case CLR_BSDF_MIRROR:
-            config.HAS_MIRROR = 1;
-            break;
-        case CLR_BSDF_CONDUCTOR:
-            config.HAS_CONDUCTOR = 1;
-            break;
-        case CLR_BSDF_DIELECTRIC:
-            config.HAS_DIELECTRIC = 1;
-            break;
+#define CLR_BSDF(KIND, kind, width, lobes, meaning)                                                \
+    case CLR_BSDF_##KIND:                                                                          \
+        config.HAS_##KIND = 1;                                                                     \
+        break;
+#include "shared/bsdf_list.def"
+#undef CLR_BSDF
         }
     config.MATERIAL_SHADES = dielectric_shades(flat.materials);
     for (const TextureInfo &texture : flat.textures)
