@@ -119,16 +119,16 @@ std::vector<std::size_t> order_planars(const Flattening &work, SceneFacts &facts
 
 } // namespace
 
-void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placement) {
+void store_coordinates(PrimitiveRecord &out, const Shape &shape, const Placement &placement) {
     const DualBasis dual = dual_basis(glm::dvec3(shape.to_world[0]) * placement.scale,
                                       glm::dvec3(shape.to_world[1]) * placement.scale);
     const glm::dvec3 origin = placement.exact(glm::dvec3(shape.to_world[3]));
     for (int c = 0; c < 3; ++c) {
-        out[c] = static_cast<clr_real>(dual.ra[c]);
-        out[4 + c] = static_cast<clr_real>(dual.rb[c]);
+        out.to_a[c] = static_cast<clr_real>(dual.ra[c]);
+        out.to_b[c] = static_cast<clr_real>(dual.rb[c]);
     }
-    out[3] = static_cast<clr_real>(-glm::dot(dual.ra, origin));
-    out[7] = static_cast<clr_real>(-glm::dot(dual.rb, origin));
+    out.to_a[3] = static_cast<clr_real>(-glm::dot(dual.ra, origin));
+    out.to_b[3] = static_cast<clr_real>(-glm::dot(dual.rb, origin));
 }
 
 void flatten_planars(Flattening &work) {

@@ -157,7 +157,7 @@ void make_records(Flattening &work) {
             r.size = p.distance;
             r.is_disk = p.is_disk != 0 ? CLR_NONE : 0;
             if (p.area > 0)
-                store_frame(r.frame, shape_of_primitive(work, i), flat.placement);
+                store_coordinates(r, shape_of_primitive(work, i), flat.placement);
         }
         r.materials = flat.shapes[i].materials;
         r.emitter = flat.shapes[i].emitter;

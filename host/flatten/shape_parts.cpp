@@ -48,9 +48,10 @@ uint append_shape(const Shape &shape, Flattening &work) {
         glm::dmat3 to_local{1.0};
         if (shape.kind == ShapeKind::sphere)
             to_local = glm::inverse(glm::dmat3(shape.to_world)) * sphere_radius(shape);
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 3; ++column)
-                flat.shape_frames.push_back(static_cast<clr_real>(to_local[column][row]));
+        const glm::dmat3 axes = glm::transpose(to_local);
+        flat.shape_frames.emplace_back();
+        for (int k = 0; k < 3; ++k)
+            store(flat.shape_frames.back().axis[k], axes[k]);
     }
     return static_cast<uint>(flat.shapes.size() - 1);
 }
@@ -65,7 +66,7 @@ void append_no_shape(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
     if (work.needs_uvs())
-        flat.shape_frames.insert(flat.shape_frames.end(), 9, 0.0f);
+        flat.shape_frames.emplace_back();
     work.lane_wise_shapes.push_back(none);
 }
 

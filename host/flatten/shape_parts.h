@@ -38,7 +38,7 @@ bool is_huge(const Shape &sphere, const Placement &placement);
 
 /// True where the normal points the other way than the shape's own.
 bool is_inverted(const Shape &shape);
-/// PrimitiveRecord::frame of a rectangle or disk.
-void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placement);
+/// PrimitiveRecord::to_a and to_b of a rectangle or disk.
+void store_coordinates(PrimitiveRecord &out, const Shape &shape, const Placement &placement);
 
 } // namespace clrender::inline CLR_PRECISION
