@@ -6,6 +6,7 @@
 #include "device/kernel_config.h"
 #include "generality.h"
 #include "scene/scene.h"
+#include "shared/bsdf_parameters.h"
 #include "shared/launch_data.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"

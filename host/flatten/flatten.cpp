@@ -20,7 +20,7 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
             clr_real ignored[3];
             flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
         }
-    if (work.wants("HAS_UVS"))
+    if (work.wants("HAS_UVS") || work.wants("HAS_TANGENTS"))
         work.flat.config.HAS_UVS = 1;
     flatten_shapes(work);
     flatten_lights(work);

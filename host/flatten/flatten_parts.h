@@ -20,7 +20,6 @@ struct Flattening {
     FlatScene flat{};
     std::vector<Box> boxes{};                 ///< by Scene::shapes, in world coordinates
     std::map<int, uint> texture_index{};      ///< by Scene::textures
-    std::map<int, uint> material_index{};     ///< by Scene::bsdfs, not twosided
     std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
     std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
     std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none

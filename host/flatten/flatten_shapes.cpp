@@ -28,12 +28,7 @@ Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
 bool is_solid(const Scene &scene, const Shape &shape) {
     if (scene.sensor.near_clip || scene.integrator.kind == IntegratorKind::depth)
         return false;
-    const auto transmits = [&](int bsdf) {
-        return bsdf != none &&
-               scene.bsdfs[static_cast<std::size_t>(bsdf)].kind == BsdfKind::dielectric;
-    };
-    const Bsdf &bsdf = scene.bsdfs[static_cast<std::size_t>(shape.bsdf)];
-    if (transmits(shape.bsdf) || transmits(bsdf.front) || transmits(bsdf.back) ||
+    if (lets_light_through(scene, shape.bsdf) ||
         (shape.emitter != none && scene.integrator.hide_emitters))
         return false;
     const double distance =
@@ -203,7 +198,10 @@ void make_records(Flattening &work) {
         flat.config.RECORD_TABLE = 1;
     }
     const bool lane_wise_only = flat.shape_of.empty();
-    flat.config.MATERIALS_IN_RECORDS = one_sided && lane_wise_only ? 1 : 0;
+    // What is found at the root of a tree is not yet the material.
+    const bool has_trees = flat.config.HAS_BLEND + flat.config.HAS_NORMALMAP +
+                               flat.config.HAS_BUMPMAP > 0;
+    flat.config.MATERIALS_IN_RECORDS = one_sided && lane_wise_only && !has_trees ? 1 : 0;
 }
 
 } // namespace
