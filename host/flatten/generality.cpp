@@ -70,6 +70,7 @@ void fill_empty_arrays(FlatScene &flat) {
     };
     fill(flat.shape_of, flat.shapes, flat.materials, flat.emitters, flat.lights,
          flat.light_triangles, flat.light_nodes, flat.planars, flat.textures, flat.bsdf_parameters);
+    flat.bsdf_tables.resize(std::max<std::size_t>(flat.bsdf_tables.size(), CLR_BOUNDARY_COSINES));
 }
 
 } // namespace

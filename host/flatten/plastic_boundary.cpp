@@ -1,11 +1,13 @@
 #include "plastic_boundary.h"
 
+#include "shared/bsdf_parameters.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
@@ -74,16 +76,21 @@ double diffuse_fresnel_reflectance(double eta) {
     return 0.919317 + x * (-3.4793 + x * (6.75335 + x * (-7.80989 + x * (4.98554 - 1.36881 * x))));
 }
 
+double internal_reflectance(double eta) {
+    const double fit = diffuse_fresnel_reflectance(1 / eta);
+    return fit < 0.97 ? fit : 1 - (1 - diffuse_fresnel_reflectance(eta)) / (eta * eta);
+}
+
 RoughBoundary rough_boundary(bool beckmann, double alpha, double eta) {
     RoughBoundary boundary;
     double internal = 0;
-    for (int i = 0; i < rough_boundary_cosines; ++i) {
-        const double z = std::max(1e-6, static_cast<double>(i) / (rough_boundary_cosines - 1));
+    for (int i = 0; i < CLR_BOUNDARY_COSINES; ++i) {
+        const double z = std::max(1e-6, static_cast<double>(i) / (CLR_BOUNDARY_COSINES - 1));
         boundary.transmittance.push_back(shares(beckmann, alpha, eta, z).transmitted);
         internal += z * shares(beckmann, alpha, 1 / eta, z).reflected;
     }
-    boundary.internal_reflectance = 2 * internal / rough_boundary_cosines;
+    boundary.internal_reflectance = 2 * internal / CLR_BOUNDARY_COSINES;
     return boundary;
 }
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

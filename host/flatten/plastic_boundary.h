@@ -1,9 +1,11 @@
 #pragma once
 /// How the dielectric boundary of `plastic` and `roughplastic` reflects, averaged over directions.
 
+#include "shared/shared_types.h"
+
 #include <vector>
 
-namespace clrender {
+namespace clrender::inline CLR_PRECISION {
 
 /// The share of diffuse light that a smooth boundary reflects; `eta` is the index of the far side
 /// over that of the near one. The fits that Mitsuba 3 takes, to .2% from 1 on and to .1% between
@@ -11,6 +13,10 @@ namespace clrender {
 /// 1; d'Eon and Irving, "A Quantized-Diffusion Model for Rendering Translucent Materials" (SIGGRAPH
 /// 2011), above.
 double diffuse_fresnel_reflectance(double eta);
+
+/// The same from inside of a boundary with index `eta`, interior over exterior. Where that fit
+/// leaves its range (eta of 4), from the reflectance of the outside, to which it is reciprocal.
+double internal_reflectance(double eta);
 
 /// A rough boundary.
 struct RoughBoundary {
@@ -20,10 +26,7 @@ struct RoughBoundary {
     double internal_reflectance = 0;
 };
 
-/// Cosines in RoughBoundary::transmittance, as Mitsuba 3 tabulates it.
-inline constexpr int rough_boundary_cosines = 64;
-
 /// Single scattering by microfacets with Smith's masking; `eta` is interior over exterior index.
 RoughBoundary rough_boundary(bool beckmann, double alpha, double eta);
 
-} // namespace clrender
+} // namespace clrender::inline CLR_PRECISION

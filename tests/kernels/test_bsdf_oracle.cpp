@@ -72,7 +72,7 @@ PlasticOracle plastic(Line &line) {
     bsdf.specular = line.vector();
     bsdf.eta = line.number();
     bsdf.nonlinear = line.number() > 0.5;
-    bsdf.internal = diffuse_fresnel_reflectance(1 / bsdf.eta);
+    bsdf.internal = internal_reflectance(bsdf.eta);
     return bsdf;
 }
 
