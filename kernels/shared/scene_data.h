@@ -83,6 +83,7 @@ enum {
 #include "shared/bsdf_list.def"
     CLR_BSDF_KINDS
 };
+#define CLR_BSDF_FIRST_NODE CLR_BSDF_BLEND
 #define CLR_BSDF_KIND_MASK 0xffu
 #define CLR_BSDF_GGX 0x100u           /* microfacets are distributed by GGX */
 #define CLR_BSDF_BECKMANN 0x200u      /* or by Beckmann */
