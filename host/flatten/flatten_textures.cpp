@@ -106,14 +106,8 @@ uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *consta
     if (known != work.texture_index.end())
         return known->second;
     uint offset = 0;
-    if (source->kind == TextureKind::bitmap) {
+    if (source->kind == TextureKind::bitmap)
         offset = offset_of_image(source->bitmap, work);
-        (source->bitmap->type == PixelType::u8 ? flat.config.HAS_BITMAPS_U8
-                                               : flat.config.HAS_BITMAPS_F32) = 1;
-    } else {
-        flat.config.HAS_CHECKERBOARDS = 1;
-    }
-    flat.config.HAS_UVS = 1;
     if (flat.decode.empty())
         flat.decode = decode_table();
     const auto index = static_cast<uint>(flat.textures.size());
