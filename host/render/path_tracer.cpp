@@ -80,7 +80,7 @@ int tile_of(const DeviceEntry &entry, const KernelConfig &config) {
 
 PictureTiles tiles_of(const FlatScene &flat) {
     return {flat.frame.width, flat.frame.height, static_cast<std::size_t>(flat.config.TILE),
-            static_cast<std::size_t>(flat.config.BORDER)};
+            static_cast<std::size_t>(flat.config.BORDER), flat.config.VARIANCE != 0};
 }
 
 std::vector<Band> bands_of(const DeviceEntry &entry, const FlatScene &flat,
