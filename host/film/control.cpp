@@ -12,9 +12,9 @@ namespace clrender {
 
 namespace {
 
-/// Pixels of control tiles: as many for a figure to a tenth, where some pixels are noisier than
-/// others; and the share of all pixels where that is more.
-constexpr std::size_t least_pixels = 2048;
+/// Pixels of control tiles: as many for a figure to a tenth, where a few tiles make most of the
+/// noise; and the share of all tiles where that is more.
+constexpr std::size_t least_pixels = 8192;
 constexpr std::size_t tiles_per_control_tile = 100;
 
 /// As relMSE: keeps dark pixels from ruling the relative error.
@@ -53,7 +53,7 @@ double weight_at(const Image &image, const Image &variance, std::size_t x, std::
         (y * static_cast<std::size_t>(image.width) + x) * static_cast<std::size_t>(image.channels) +
         channel;
     const double value = double{image.f32[i]};
-    const bool is_known = double{variance.f32[i]} < known * value * value;
+    const bool is_known = double{variance.f32[i]} * weight_of(value) < known;
     return weight_of(is_known ? value : mean_around(image, x, y, channel));
 }
 

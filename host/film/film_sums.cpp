@@ -62,8 +62,8 @@ double PixelSums::colour(int channel) const {
 }
 
 double PixelSums::weight() const {
-    return std::ldexp(static_cast<double>(static_cast<std::int64_t>(joined(pixel_.weight))),
-                      CLR_WEIGHT_LSB);
+    constexpr double unit = 1.0 / (1 << -CLR_WEIGHT_LSB);
+    return static_cast<double>(static_cast<std::int64_t>(joined(pixel_.weight))) * unit;
 }
 
 double PixelSums::mean(int channel) const {
@@ -72,7 +72,8 @@ double PixelSums::mean(int channel) const {
 }
 
 double PixelMoments::weight() const {
-    return std::ldexp(static_cast<double>(joined(moments_.weight)), CLR_SQUARE_WEIGHT_LSB);
+    constexpr double unit = 1.0 / static_cast<double>(std::uint64_t{1} << -CLR_SQUARE_WEIGHT_LSB);
+    return static_cast<double>(joined(moments_.weight)) * unit;
 }
 
 double PixelMoments::scatter(int channel, double mean) const {

@@ -73,7 +73,7 @@ TEST_CASE("small pictures have many control tiles, large ones a hundredth") {
     CHECK(choose_control_group(small) == 1);
     const ControlLayout large{1920, 1080, 8, 0};
     CHECK(choose_control_group(large) >= 99);
-    const ControlLayout pixels{512, 512, 1, 0};
+    const ControlLayout pixels{1024, 1024, 1, 0};
     CHECK(choose_control_group(pixels) >= 99);
 }
 
