@@ -45,16 +45,20 @@ double mean_around(const Image &image, std::size_t x, std::size_t y, std::size_t
 }
 
 /// The weight of the squared error of a value. One that is known to a sixteenth is its own; one
-/// that is not is too bright where its error seems large, and would weigh it too lightly.
+/// that is not is too bright where its error seems large, and would weigh it too lightly: in its
+/// place stands what its neighbours say, as far as its error allows.
 double weight_at(const Image &image, const Image &variance, std::size_t x, std::size_t y,
                  std::size_t channel) {
     constexpr double known = 1.0 / 256;
+    constexpr double most_errors = 2;
     const std::size_t i =
         (y * static_cast<std::size_t>(image.width) + x) * static_cast<std::size_t>(image.channels) +
         channel;
-    const double value = double{image.f32[i]};
-    const bool is_known = double{variance.f32[i]} * weight_of(value) < known;
-    return weight_of(is_known ? value : mean_around(image, x, y, channel));
+    const double value = double{image.f32[i]}, square = double{variance.f32[i]};
+    if (square * weight_of(value) < known)
+        return weight_of(value);
+    const double reach = most_errors * std::sqrt(square);
+    return weight_of(std::clamp(mean_around(image, x, y, channel), value - reach, value + reach));
 }
 
 /// Squared differences in a control tile, and what scatter makes expect of them.
