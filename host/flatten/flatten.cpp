@@ -1,20 +1,30 @@
 #include "flatten_parts.h"
 
+#include <algorithm>
+
 namespace clrender::inline CLR_PRECISION {
 
 std::size_t FlatScene::bytes() const {
-    const auto size = [](const auto &...arrays) {
-        return ((arrays.size() * sizeof(*arrays.data())) + ...);
-    };
-    return sizeof(frame) + size(spheres, sphere_tests, planars, records, bvh.nodes,
-                                bvh.triangle_blocks, bvh.sphere_blocks, triangles, normals, uvs,
-                                shape_of, shapes, shape_frames, materials, emitters, lights,
-                                light_triangles, light_nodes, textures, texels_u8, texels_f32,
-                                decode, env_texels, env_cdf, env_guide, filter);
+    std::size_t bytes = sizeof(frame);
+    for_each_array(*this, [&](const auto &array) { bytes += bytes_of(array); });
+    return bytes;
 }
 
-FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
+int FlatScene::sole_light_sphere() const {
+    const bool is_sphere = lights.size() == 1 && lights.front().kind == CLR_LIGHT_SPHERE;
+    if (!is_sphere || facts.environment == CLR_ENVIRONMENT_MAP || has_bvh_spheres())
+        return none;
+    return static_cast<int>(lights.front().prim);
+}
+
+bool FlatScene::has_tangents() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material &m) { return (m.kind & CLR_BSDF_TANGENTS) != 0; });
+}
+
+FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
     Flattening work{scene, options};
+    work.flat.facts.strategy = strategy_of(work);
     for (const Shape &shape : scene.shapes)
         work.boxes.push_back(shape_box(shape));
     work.flat.placement = choose_placement(scene, work.boxes);
@@ -25,13 +35,12 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
             clr_real ignored[3];
             flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
         }
-    if (work.wants("HAS_UVS"))
-        work.flat.config.HAS_UVS = 1;
     flatten_shapes(work);
     flatten_lights(work);
     flatten_camera(work);
     work.flat.frame.film_exponent = film_exponent(scene, work.flat.placement);
-    apply_generality(options.generality, work.flat);
+    if (work.wants("ENVIRONMENT"))
+        make_environment_map(work.flat);
     return std::move(work.flat);
 }
 

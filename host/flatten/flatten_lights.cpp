@@ -156,7 +156,6 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     const Emitter &emitter = work.scene.emitters[index];
     const Texture &texture = work.scene.textures[static_cast<std::size_t>(emitter.radiance)];
     const double radiance = mean_luminance(texture);
-    flat.config.HAS_AREA_EMITTERS = 1;
     Light light{};
     light.texture = flatten_texture(work, emitter.radiance, Rgb{0.0}, light.radiance);
     EmitterInfo &info = flat.emitters[index];
@@ -166,13 +165,10 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     const auto found = work.primitive_of_shape.find(emitter.shape);
     if (found == work.primitive_of_shape.end()) {
         info.kind = CLR_LIGHT_TRIANGLE;
-        if (!(radiance > 0)) {
-            work.light_by_chance = true;
+        if (!(radiance > 0))
             return;
-        }
         info.density = 1;
-        info.light = list.size() -
-                     static_cast<uint>(flat.config.SPHERE_COUNT + flat.config.PLANAR_COUNT) -
+        info.light = list.size() - static_cast<uint>(flat.lane_wise_count()) -
                      static_cast<uint>(work.triangles_of_shape.at(emitter.shape).first);
         add_mesh(work, emitter, light, radiance, list);
         return;
@@ -182,7 +178,7 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     if (work.scene.shapes[static_cast<std::size_t>(emitter.shape)].kind == ShapeKind::sphere) {
         // The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
         const uint bvh_sphere = flat.frame.prim_bvh_sphere;
-        const auto lane_wise = static_cast<uint>(flat.config.SPHERE_COUNT);
+        const auto lane_wise = static_cast<uint>(flat.facts.sphere_count);
         const Sphere &sphere =
             flat.spheres[light.prim < bvh_sphere ? light.prim
                                                  : light.prim - bvh_sphere + lane_wise];
@@ -194,10 +190,8 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         std::copy_n(sphere.center, 3, info.center);
         light.area = info.radius = sphere.radius;
         // A sphere that shines inwards is met by chance only: nothing outside sees it.
-        if (!(sphere.radius > 0) || !(radiance > 0)) {
-            work.light_by_chance = true;
+        if (!(sphere.radius > 0) || !(radiance > 0))
             return;
-        }
         info.density = 1;
         const glm::dvec3 center = in_single(sphere.center);
         const double radius = in_single(sphere.radius);
@@ -206,14 +200,12 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
             {center - radius, center + radius, {0, 0, 1}, -1, pi * radius * radius * radiance});
         return;
     }
-    light.prim -= static_cast<uint>(flat.config.SPHERE_COUNT);
+    light.prim -= static_cast<uint>(flat.facts.sphere_count);
     info.kind = light.kind = CLR_LIGHT_PLANAR;
     const Planar &planar = flat.planars[light.prim];
     light.area = planar.area;
-    if (!(radiance > 0) || !(planar.area > 0)) {
-        work.light_by_chance = true;
+    if (!(radiance > 0) || !(planar.area > 0))
         return;
-    }
     info.density = 1 / planar.area;
     LightExtent extent;
     for (int c = 0; c < 3; ++c) {
@@ -261,16 +253,13 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
     if (sole.kind == CLR_LIGHT_TRIANGLE)
         for (EmitterInfo &info : flat.emitters)
             info.density = info.density > 0 ? 1 / sole.area : 0.0f;
-    if (flat.config.ENVIRONMENT == 2 || flat.config.HAS_BVH_SPHERES != 0)
+    if (flat.facts.environment == CLR_ENVIRONMENT_MAP || flat.has_bvh_spheres())
         return;
-    if (sole.kind == CLR_LIGHT_SPHERE)
-        flat.config.SOLE_LIGHT_SPHERE = static_cast<int>(sole.prim);
     double distance = INFINITY;
-    for (int i = 0; i < flat.config.WIDE_COUNT; ++i)
-        if (i != flat.config.SOLE_LIGHT_SPHERE)
+    for (int i = 0; i < flat.facts.large_count; ++i)
+        if (i != flat.sole_light_sphere())
             distance = std::min(
                 distance, shadow_free_distance(extent, flat.spheres[static_cast<std::size_t>(i)]));
-    flat.config.SHADOW_FREE_COUNT = distance > 0 ? flat.config.WIDE_COUNT : 0;
     flat.frame.shadow_free_distance = static_cast<clr_real>(distance);
 }
 
@@ -281,7 +270,7 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
 int light_samples(const Flattening &work, const LightList &list) {
     if (work.options.light_samples > 0)
         return work.options.light_samples;
-    const uint choices = list.size() + (work.flat.config.ENVIRONMENT == 2 ? 1 : 0);
+    const uint choices = list.size() + (work.flat.facts.environment == CLR_ENVIRONMENT_MAP ? 1 : 0);
     const Integrator &integrator = work.scene.integrator;
     if (integrator.kind == IntegratorKind::depth || choices == 0)
         return 1;
@@ -298,7 +287,7 @@ int light_samples(const Flattening &work, const LightList &list) {
     const LightExtent &sole = list.extents.front();
     const double size = glm::length(sole.upper - sole.lower);
     const double distance = glm::length((sole.lower + sole.upper) * 0.5);
-    return work.flat.config.ENVIRONMENT != 0 && size > broad * distance ? 2 : 1;
+    return work.flat.facts.environment != CLR_ENVIRONMENT_NONE && size > broad * distance ? 2 : 1;
 }
 
 } // namespace
@@ -310,7 +299,6 @@ double luminance(const Rgb &c) {
 void flatten_lights(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.emitters.resize(work.scene.emitters.size());
-    flat.config.SOLE_EMITTER = flat.emitters.size() == 1 ? 1 : 0;
     LightList list;
     double map_power = 0;
     for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {
@@ -327,31 +315,19 @@ void flatten_lights(Flattening &work) {
             break;
         }
     }
-    if (flat.config.ENVIRONMENT == 2)
+    if (flat.facts.environment == CLR_ENVIRONMENT_MAP)
         flat.frame.env_probability =
             static_cast<clr_real>(environment_share(list.extents, map_power));
-    flat.config.LIGHT_SAMPLES = light_samples(work, list);
+    flat.facts.light_samples = light_samples(work, list);
     // A tree needs two lights; those without light are never chosen.
     while (work.wants("LIGHT_COUNT") && list.size() < 2)
         list.add({}, {});
-    for (const Light &light : list.lights) {
-        flat.config.HAS_POINT_LIGHTS |= light.kind == CLR_LIGHT_POINT ? 1 : 0;
-        flat.config.HAS_SPHERE_LIGHTS |= light.kind == CLR_LIGHT_SPHERE ? 1 : 0;
-        flat.config.HAS_PLANAR_LIGHTS |= light.kind == CLR_LIGHT_PLANAR ? 1 : 0;
-        flat.config.HAS_TRIANGLE_LIGHTS |= light.kind == CLR_LIGHT_TRIANGLE ? 1 : 0;
-    }
     flat.lights = list.lights;
-    flat.config.LIGHT_COUNT = flat.lights.size() > 1 ? -1 : static_cast<int>(flat.lights.size());
     if (flat.lights.size() > 1) {
         LightTree tree = build_light_tree(list.extents);
         for (std::size_t i = 0; i < flat.lights.size(); ++i)
             flat.lights[i].trail = tree.trail[i];
         flat.light_nodes = std::move(tree.nodes);
-        flat.config.HAS_ORIENTED_LIGHTS =
-            std::any_of(list.extents.begin(), list.extents.end(),
-                        [](const LightExtent &e) { return e.cosine > -1; })
-                ? 1
-                : 0;
     } else if (flat.lights.size() == 1) {
         set_sole_light(list.extents.front(), flat);
     }

@@ -137,7 +137,7 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
 void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
     FlatScene &flat = work.flat;
     VertexData wanted;
-    wanted.uvs = flat.config.HAS_UVS != 0;
+    wanted.uvs = work.needs_uvs();
     wanted.normals = work.wants("HAS_VERTEX_NORMALS");
     for (const Shape &shape : work.scene.shapes)
         wanted.normals |= shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
@@ -153,8 +153,6 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
         range.count = flat.corners.size() - range.first;
     }
     flat.triangle_count = flat.corners.size();
-    flat.config.HAS_TRIANGLES = flat.corners.empty() ? 0 : 1;
-    flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
 }
 
 } // namespace clrender::inline CLR_PRECISION

@@ -93,7 +93,7 @@ unsigned axis_bits(const Shape &shape, const Placement &placement) {
 /// The planars' shapes in the order of their primitives: those that cast no shadows last, and for
 /// each kind of test one after the other, so that like scenes need the same kernel.
 std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_in_bvh,
-                                       KernelConfig &config) {
+                                       SceneFacts &facts) {
     const Scene &scene = work.scene;
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
@@ -110,13 +110,13 @@ std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_i
         const ShadowlessPlanars shadowless(scene, unseen / work.flat.placement.scale);
         const auto last = std::stable_partition(
             order.begin(), order.end(), [&](std::size_t i) { return !shadowless.contains(i); });
-        config.SHADOWLESS_PLANAR_COUNT = static_cast<int>(order.end() - last);
+        facts.shadowless_count = static_cast<int>(order.end() - last);
     }
     unsigned axes = 0; // where there are more planars than bits, they are disks, and have none
     for (std::size_t i = 0; i < order.size(); ++i)
         if (const unsigned bits = bits_of(order[i]); bits != 0)
             axes |= bits << (2 * i);
-    config.PLANAR_AXES = static_cast<int>(axes);
+    facts.planar_axes = static_cast<int>(axes);
     return order;
 }
 
@@ -136,18 +136,15 @@ void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placem
 
 void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
     FlatScene &flat = work.flat;
-    for (const std::size_t i : order_planars(work, rectangles_in_bvh, flat.config)) {
+    for (const std::size_t i : order_planars(work, rectangles_in_bvh, flat.facts)) {
         const Shape &shape = work.scene.shapes[i];
         append_lane_wise_shape(i, work);
         flat.planars.push_back(flatten_planar(shape, flat.placement));
-        if (shape.kind == ShapeKind::disk)
-            flat.config.HAS_DISKS = 1;
     }
     if (work.wants("PLANAR_COUNT") && flat.planars.empty()) {
         append_no_shape(work);
         flat.planars.emplace_back();
     }
-    flat.config.PLANAR_COUNT = static_cast<int>(flat.planars.size());
     // Up to these coordinates no planar's hits are near its outline.
     double rim = 1;
     for (const Planar &p : flat.planars) {

@@ -25,15 +25,10 @@ Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
 
 /// True if no ray can start inside the sphere: it lets none through, and the camera is outside. A
 /// path cannot get in without meeting the surface, unless a clip plane cuts the surface open.
-bool is_solid(const Scene &scene, const Shape &shape) {
+bool is_opaque(const Scene &scene, const Shape &shape) {
     if (scene.sensor.near_clip || scene.integrator.kind == IntegratorKind::depth)
         return false;
-    const auto transmits = [&](int bsdf) {
-        return bsdf != none &&
-               scene.bsdfs[static_cast<std::size_t>(bsdf)].kind == BsdfKind::dielectric;
-    };
-    const Bsdf &bsdf = scene.bsdfs[static_cast<std::size_t>(shape.bsdf)];
-    if (transmits(shape.bsdf) || transmits(bsdf.front) || transmits(bsdf.back) ||
+    if (lets_light_through(scene, shape.bsdf) ||
         (shape.emitter != none && scene.integrator.hide_emitters))
         return false;
     const double distance =
@@ -43,7 +38,7 @@ bool is_solid(const Scene &scene, const Shape &shape) {
 }
 
 /// Spheres from this radius on, in the renderer's units, are as large as the scene.
-constexpr double wide_radius = 0.5;
+constexpr double large_radius = 0.5;
 /// From this radius on, a rounding of the radius is larger than what is seen of the scene.
 constexpr double huge_radius = 64;
 
@@ -54,10 +49,9 @@ bool is_beside(const Shape &shape, const Placement &placement, double least_radi
            glm::length(placement.exact(glm::dvec3(shape.to_world[3]))) < 2 * radius;
 }
 
-/// The spheres' shapes in the order of their primitives: solid ones first, of these those that are
-/// wide before the others; huge ones last. With `huge_only` no others.
-std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only,
-                                       KernelConfig &config) {
+/// The spheres' shapes in the order of their primitives: opaque ones first, of these those that are
+/// large before the others; huge ones last. With `huge_only` no others.
+std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only, SceneFacts &facts) {
     const Scene &scene = work.scene;
     const Placement &placement = work.flat.placement;
     std::vector<std::size_t> order, huge;
@@ -70,14 +64,14 @@ std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only,
             order.push_back(i);
     }
     const auto others = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
-        return is_solid(scene, scene.shapes[i]);
+        return is_opaque(scene, scene.shapes[i]);
     });
     const auto smaller = std::stable_partition(order.begin(), others, [&](std::size_t i) {
-        return is_beside(scene.shapes[i], placement, wide_radius);
+        return is_beside(scene.shapes[i], placement, large_radius);
     });
-    config.SOLID_COUNT = static_cast<int>(others - order.begin());
-    config.WIDE_COUNT = static_cast<int>(smaller - order.begin());
-    config.HUGE_COUNT = static_cast<int>(huge.size());
+    facts.opaque_count = static_cast<int>(others - order.begin());
+    facts.large_count = static_cast<int>(smaller - order.begin());
+    facts.huge_count = static_cast<int>(huge.size());
     order.insert(order.end(), huge.begin(), huge.end());
     return order;
 }
@@ -85,7 +79,7 @@ std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only,
 /// The spheres that every ray tests: all of them, or the huge ones.
 void flatten_lane_wise_spheres(Flattening &work, bool huge_only) {
     FlatScene &flat = work.flat;
-    for (const std::size_t i : order_spheres(work, huge_only, flat.config)) {
+    for (const std::size_t i : order_spheres(work, huge_only, flat.facts)) {
         const Shape &shape = work.scene.shapes[i];
         append_lane_wise_shape(i, work);
         flat.spheres.push_back(flatten_sphere(shape, flat.placement));
@@ -94,7 +88,7 @@ void flatten_lane_wise_spheres(Flattening &work, bool huge_only) {
         append_no_shape(work);
         flat.spheres.emplace_back();
     }
-    flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
+    flat.facts.sphere_count = static_cast<int>(flat.spheres.size());
 }
 
 /// The spheres that are too many to test one by one.
@@ -110,7 +104,7 @@ void flatten_bvh_spheres(Flattening &work) {
         flat.spheres.push_back(s);
         flat.bvh_spheres.push_back(
             {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
-        work.primitive_of_shape[static_cast<int>(i)] = static_cast<uint>(flat.config.SPHERE_COUNT) +
+        work.primitive_of_shape[static_cast<int>(i)] = static_cast<uint>(flat.facts.sphere_count) +
                                                        static_cast<uint>(flat.planars.size()) + id;
     }
 }
@@ -133,8 +127,8 @@ HugeSphere huge_sphere(const Shape &shape, const Flattening &work) {
 
 /// What rays test of the lane-wise spheres, see SphereTest.
 void make_sphere_tests(FlatScene &flat, const Flattening &work) {
-    const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
-    const auto ordinary = spheres - static_cast<std::size_t>(flat.config.HUGE_COUNT);
+    const auto spheres = static_cast<std::size_t>(flat.facts.sphere_count);
+    const auto ordinary = spheres - static_cast<std::size_t>(flat.facts.huge_count);
     flat.sphere_tests.resize(2 * spheres);
     for (std::size_t i = 0; i < ordinary; ++i) {
         const Sphere &s = flat.spheres[i];
@@ -154,13 +148,12 @@ void make_sphere_tests(FlatScene &flat, const Flattening &work) {
 /// What rays find of the lane-wise primitives, in their order.
 void make_records(Flattening &work) {
     FlatScene &flat = work.flat;
-    const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
+    const auto spheres = static_cast<std::size_t>(flat.facts.sphere_count);
     make_sphere_tests(flat, work);
-    bool one_sided = true;
     for (std::size_t i = 0; i < spheres + flat.planars.size(); ++i) {
         PrimitiveRecord r{};
         if (i < spheres) {
-            const bool huge = i + static_cast<std::size_t>(flat.config.HUGE_COUNT) >= spheres;
+            const bool huge = i + static_cast<std::size_t>(flat.facts.huge_count) >= spheres;
             std::copy_n(flat.spheres[i].center, 3, r.place);
             r.size = flat.spheres[i].radius;
             r.inv_size = 1 / r.size;
@@ -181,8 +174,6 @@ void make_records(Flattening &work) {
         r.emitter = flat.shapes[i].emitter;
         const uint front = flat.shapes[i].materials & CLR_NO_MATERIAL;
         const uint back = flat.shapes[i].materials >> 16;
-        one_sided =
-            one_sided && (front == back || front == CLR_NO_MATERIAL || back == CLR_NO_MATERIAL);
         const uint material = front != CLR_NO_MATERIAL ? front : back;
         if (material != CLR_NO_MATERIAL)
             std::memcpy(r.material, &flat.materials[material], sizeof(r.material));
@@ -200,10 +191,7 @@ void make_records(Flattening &work) {
                                 field * sizeof(clr_real),
                             sizeof(clr_real));
         flat.records = std::move(table);
-        flat.config.RECORD_TABLE = 1;
     }
-    const bool lane_wise_only = flat.shape_of.empty();
-    flat.config.MATERIALS_IN_RECORDS = one_sided && lane_wise_only ? 1 : 0;
 }
 
 } // namespace
@@ -228,23 +216,20 @@ void flatten_shapes(Flattening &work) {
         flatten_bvh_spheres(work);
 
     make_records(work);
-    flat.config.HAS_BVH_SPHERES = flat.bvh_spheres.empty() ? 0 : 1;
-    if (flat.has_hierarchy())
-        flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
 }
 
 void build_hierarchy(FlatScene &flat) {
-    if (!flat.has_hierarchy())
-        return;
-    flat.bvh = build_bvh(flat.corners, flat.bvh_spheres);
+    Bvh bvh = build_bvh(flat.corners, flat.bvh_spheres);
     // An empty list in place of an empty vector would keep the memory.
     flat.corners = std::vector<TriangleCorners>();
     flat.bvh_spheres = std::vector<BvhSphere>();
-    flat.frame.triangle_blocks = static_cast<uint>(flat.bvh.triangle_blocks.size());
-    flat.frame.sphere_blocks = static_cast<uint>(flat.bvh.sphere_blocks.size());
-    if (flat.bvh.degenerate > 0)
-        log::warn(
-            fmt::format("{} triangles or spheres without area are left out", flat.bvh.degenerate));
+    flat.nodes = std::move(bvh.nodes);
+    flat.triangle_blocks = std::move(bvh.triangle_blocks);
+    flat.sphere_blocks = std::move(bvh.sphere_blocks);
+    flat.frame.triangle_blocks = static_cast<uint>(flat.triangle_blocks.size());
+    flat.frame.sphere_blocks = static_cast<uint>(flat.sphere_blocks.size());
+    if (bvh.degenerate > 0)
+        log::warn(fmt::format("{} triangles or spheres without area are left out", bvh.degenerate));
 }
 
 } // namespace clrender::inline CLR_PRECISION

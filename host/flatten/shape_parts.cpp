@@ -11,7 +11,7 @@ uint append_shape(const Shape &shape, Flattening &work) {
     FlatScene &flat = work.flat;
     flat.shapes.push_back({work.sides_of_bsdf.at(shape.bsdf),
                            shape.emitter == none ? CLR_NONE : static_cast<uint>(shape.emitter)});
-    if (flat.config.HAS_UVS != 0) {
+    if (work.needs_uvs()) {
         glm::dmat3 to_local{1.0};
         if (shape.kind == ShapeKind::sphere)
             to_local = glm::inverse(glm::dmat3(shape.to_world)) * sphere_radius(shape);
@@ -31,7 +31,7 @@ void append_lane_wise_shape(std::size_t shape, Flattening &work) {
 void append_no_shape(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
-    if (flat.config.HAS_UVS != 0)
+    if (work.needs_uvs())
         flat.shape_frames.insert(flat.shape_frames.end(), 9, 0.0f);
     work.lane_wise_shapes.push_back(none);
 }

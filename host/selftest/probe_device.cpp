@@ -2,6 +2,7 @@
 
 #include "device/kernel_program.h"
 #include "device/upload.h"
+#include "render/device_scene.h"
 
 #include <cmath>
 
@@ -24,11 +25,11 @@ KernelConfig probe_config(int lanes, int filter) {
     config.HAS_PLANAR_LIGHTS = config.HAS_TRIANGLE_LIGHTS = 1;
     // A huge sphere's second entry follows the first (probe_sphere_huge).
     config.SPHERE_COUNT = config.HUGE_COUNT = 1;
-    config.LIGHT_COUNT = -1;
-    config.ENVIRONMENT = 2;
+    config.LIGHT_COUNT = CLR_MANY_LIGHTS;
+    config.ENVIRONMENT = CLR_ENVIRONMENT_MAP;
     config.HAS_LENS = config.HAS_CLIP = 1;
     config.FILTER = filter;
-    config.BORDER = filter == 3 ? probe_border : 0;
+    config.BORDER = filter == CLR_FILTER_SPLATTED ? probe_border : 0;
     return config;
 }
 
@@ -58,8 +59,7 @@ cl::Program ProbeDevice::compile(int filter) const {
 }
 
 cl::Kernel ProbeDevice::kernel(const std::string &name) {
-    constexpr int splatted = 3, sampled = 1;
-    const int filter = name == "probe_filter_offset" ? sampled : splatted;
+    const int filter = name == "probe_filter_offset" ? CLR_FILTER_SAMPLED : CLR_FILTER_SPLATTED;
     auto program = programs_.find(filter);
     if (program == programs_.end())
         program = programs_.emplace(filter, compile(filter)).first;
@@ -89,18 +89,10 @@ std::vector<float> ProbeDevice::launch(cl::Kernel &kernel, cl_uint index, const 
 std::vector<float> ProbeDevice::run_scene(const std::string &name, const FlatScene &flat,
                                           const std::vector<float> &in, std::size_t in_size,
                                           std::size_t out_size) {
-    const cl::Buffer buffers[] = {upload(std::vector{flat.frame}), upload(flat.planars),
-                                  upload(flat.emitters),           upload(flat.lights),
-                                  upload(flat.light_triangles),    upload(flat.light_nodes),
-                                  upload(flat.textures),           upload(flat.texels_u8),
-                                  upload(flat.texels_f32),         upload(flat.decode),
-                                  upload(flat.env_texels),         upload(flat.env_cdf),
-                                  upload(flat.env_guide),          upload(flat.filter),
-                                  upload(flat.shape_frames)};
+    FlatScene uploaded = flat; // DeviceScene takes the arrays away
+    const DeviceScene scene(context_, queue_, uploaded);
     cl::Kernel kernel = this->kernel(name);
-    cl_uint index = 0;
-    for (const cl::Buffer &buffer : buffers)
-        kernel.setArg(index++, buffer);
+    const cl_uint index = scene.bind(kernel);
     return launch(kernel, index, upload(in), in.size() / in_size, out_size);
 }
 

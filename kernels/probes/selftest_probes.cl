@@ -18,36 +18,13 @@
 #define PROBE_GROUP 16u
 
 #define PROBE_SCENE_PARAMETERS                                                                     \
-    __global const FrameData *frame, __global const Planar *planars,                               \
-        __global const EmitterInfo *emitters, __global const Light *lights,                        \
-        __global const LightTriangle *light_triangles, __global const LightNode *light_nodes,      \
-        __global const TextureInfo *textures, __global const uint *texels_u8,                      \
-        __global const clr_real *texels_f32, __global const clr_real *decode,                      \
-        __global const clr_real *env_texels, __global const clr_real *env_cdf,                     \
-        __global const uint *env_guide, __global const clr_real *filter,                           \
-        __global const clr_real *shape_frames, __global const clr_real *in,                        \
-        __global clr_real *out, uint count
+    SCENE_PARAMETERS, __global const clr_real *in, __global clr_real *out, uint count
 
 #define PROBE_SCENE                                                                                \
     const uint first = (uint)get_global_id(0) * LANES;                                             \
     if (first >= count)                                                                            \
         return;                                                                                    \
-    SceneData data;                                                                                \
-    data.frame = frame;                                                                            \
-    data.planars = planars;                                                                        \
-    data.emitters = emitters;                                                                      \
-    data.lights = lights;                                                                          \
-    data.light_triangles = light_triangles;                                                        \
-    data.light_nodes = light_nodes;                                                                \
-    data.textures = textures;                                                                      \
-    data.texels_u8 = texels_u8;                                                                    \
-    data.texels_f32 = texels_f32;                                                                  \
-    data.decode = decode;                                                                          \
-    data.env_texels = env_texels;                                                                  \
-    data.env_cdf = env_cdf;                                                                        \
-    data.env_guide = env_guide;                                                                    \
-    data.filter = filter;                                                                          \
-    data.shape_frames = shape_frames;                                                              \
+    const SceneData data = SCENE_DATA;                                                             \
     const SceneData *scene = &data
 
 #define PROBE_FIRST                                                                                \
@@ -87,8 +64,8 @@ __kernel void probe_math(__global const clr_real *in, __global clr_real *out, ui
 
 /* A sphere for each group of rays. in: o, d, t_max, 1 if the ray starts on the sphere. out: the
    distance by sphere_intersect and by sphere_root_bits, INFINITY for none before t_max; what
-   sphere_blocks and sphere_blocks_solid say. */
-__kernel void probe_sphere(__global const SphereTest *spheres, uint wide,
+   sphere_blocks and sphere_blocks_opaque say. */
+__kernel void probe_sphere(__global const SphereTest *spheres, uint large,
                            __global const clr_real *in, __global clr_real *out, uint count) {
     PROBE_FIRST;
     __global const SphereTest *s = spheres + first / PROBE_GROUP;
@@ -99,11 +76,11 @@ __kernel void probe_sphere(__global const SphereTest *spheres, uint wide,
     const mask_l met = sphere_intersect(s, o, d, self, t_max, &t);
     probe_out(pick(met, t, real_of(INFINITY)), out, first, count, 4u, 0u);
     const bits_l far = as_bits_l(t_max);
-    const bits_l bits = min(sphere_root_bits(s, (int)wide, o, d), far);
+    const bits_l bits = min(sphere_root_bits(s, (int)large, o, d), far);
     probe_out(pick(same_bits(bits, far), real_of(INFINITY), as_real(bits)), out, first, count, 4u,
               1u);
     probe_out(probe_flag(sphere_blocks(s, o, d, self, t_max)), out, first, count, 4u, 2u);
-    probe_out(probe_flag(sphere_blocks_solid(s, (int)wide, o, d, t_max)), out, first, count, 4u,
+    probe_out(probe_flag(sphere_blocks_opaque(s, (int)large, o, d, t_max)), out, first, count, 4u,
               3u);
 }
 

@@ -18,8 +18,11 @@ def variant(compiling, path, rays):
 
 class Ablation(unittest.TestCase):
     def test_every_feature_is_in_one_group(self):
-        text = (ROOT / "kernels" / "shared" / "kernel_config.def").read_text()
-        known = re.findall(r"^CLR_CONFIG\((\w+)", text, re.MULTILINE)
+        shared = ROOT / "kernels" / "shared"
+        known = re.findall(r"^CLR_CONFIG\((\w+)", (shared / "kernel_config.def").read_text(),
+                           re.MULTILINE)
+        known += ["HAS_" + kind for kind in
+                  re.findall(r"^CLR_BSDF\((\w+)", (shared / "bsdf_list.def").read_text(), re.MULTILINE)]
         grouped = [name for names in ablation.GROUPS.values() for name in names.split(",")]
         self.assertEqual(len(grouped), len(set(grouped)))
         self.assertLessEqual(set(grouped), set(known))

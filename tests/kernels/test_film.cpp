@@ -2,7 +2,7 @@
 /// up to.
 
 #include "cl_test_device.h"
-#include "device/kernel_config.h"
+#include "config/kernel_config.h"
 #include "film/film_sums.h"
 
 #include <catch2/catch.hpp>

@@ -1,13 +1,13 @@
 #pragma once
 /// The flat scene in device memory: the only place that uploads.
 
-#include "cl_context.h"
+#include "device/cl_context.h"
 #include "flatten/flat_scene.h"
 
 namespace clrender::inline CLR_PRECISION {
 
 /// Bytes of the largest of the arrays that are uploaded.
-std::size_t largest_array_bytes(FlatScene &flat);
+std::size_t largest_array_bytes(const FlatScene &flat);
 
 class DeviceScene {
 public:

@@ -1,6 +1,6 @@
 #include "device_scene.h"
 
-#include "upload.h"
+#include "device/upload.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,26 +8,7 @@
 
 namespace clrender::inline CLR_PRECISION {
 
-namespace {
-
-/// Calls `take` with each array, in the order of the kernel's arguments behind the frame.
-template <typename Take> void for_each_array(FlatScene &flat, Take take) {
-    const auto take_all = [&](auto &...arrays) { (take(arrays), ...); };
-    take_all(flat.spheres, flat.sphere_tests, flat.planars, flat.records, flat.bvh.nodes,
-             flat.bvh.triangle_blocks, flat.bvh.sphere_blocks, flat.triangles, flat.normals,
-             flat.uvs, flat.shape_of, flat.shapes, flat.shape_frames, flat.materials, flat.emitters,
-             flat.lights, flat.light_triangles, flat.light_nodes, flat.textures, flat.texels_u8,
-             flat.texels_f32, flat.decode, flat.env_texels, flat.env_cdf, flat.env_guide,
-             flat.filter);
-}
-
-template <typename T> std::size_t bytes_of(const std::vector<T> &array) {
-    return array.size() * sizeof(T);
-}
-
-} // namespace
-
-std::size_t largest_array_bytes(FlatScene &flat) {
+std::size_t largest_array_bytes(const FlatScene &flat) {
     std::size_t largest = 0;
     for_each_array(flat, [&](const auto &array) { largest = std::max(largest, bytes_of(array)); });
     return largest;
