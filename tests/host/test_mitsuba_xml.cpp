@@ -109,14 +109,51 @@ TEST_CASE("conductors") {
 }
 
 TEST_CASE("dielectrics") {
-    const IndicesOfRefraction glass = bsdf<DielectricBsdf>("dielectric", "").ior;
-    CHECK(glass.interior == 1.5046);
-    CHECK(glass.exterior == 1.000277);
-    const auto named =
-        bsdf<DielectricBsdf>("dielectric", R"(<string name="int_ior" value="Diamond"/>
+    const auto glass = bsdf<DielectricBsdf>("dielectric", "");
+    CHECK(glass.ior.interior == 1.5046);
+    CHECK(glass.ior.exterior == 1.000277);
+    const auto named = bsdf<DielectricBsdf>("dielectric", R"(<string name="int_ior" value="Diamond"/>
                                              <float name="ext_ior" value="1.3"/>)");
     CHECK(named.ior.interior == 2.419);
     CHECK(named.ior.exterior == 1.3);
+}
+
+TEST_CASE("rough conductors") {
+    const Scene scene = load_text(R"(<shape type="sphere"><bsdf type="roughconductor">
+        <string name="material" value="Au"/><string name="distribution" value="ggx"/>
+        <rgb name="alpha_u" value=".1 .2 .6"/><float name="alpha_v" value=".4"/>
+        <boolean name="sample_visible" value="false"/></bsdf></shape>)");
+    const auto &rough = std::get<RoughConductorBsdf>(scene.bsdfs.at(0).model);
+    const auto value = [&](int texture) {
+        return scene.textures.at(static_cast<std::size_t>(texture)).value;
+    };
+    CHECK(rough.microfacets.kind == MicrofacetKind::ggx);
+    check_rgb(value(rough.microfacets.alpha_u), Rgb(.3));
+    check_rgb(value(rough.microfacets.alpha_v), Rgb(.4));
+    check_rgb(value(rough.eta), {.143036, .375307, 1.442045});
+    const auto plain = bsdf<RoughConductorBsdf>("roughconductor", "");
+    CHECK(plain.microfacets.kind == MicrofacetKind::beckmann);
+    CHECK(plain.microfacets.alpha_u == plain.microfacets.alpha_v);
+    const auto error = [](const std::string &type, const std::string &content) {
+        return error_of_text("<shape type='sphere'><bsdf type='" + type + "'>" + content +
+                             "</bsdf></shape>");
+    };
+    CHECK_THAT(error("roughconductor", "<float name='alpha_u' value='.1'/>"),
+               Catch::Contains("expected both alpha_u and alpha_v"));
+    CHECK_THAT(error("roughconductor", "<float name='alpha_u' value='.1'/><float name='alpha_v' "
+                                       "value='.1'/><float name='alpha' value='.1'/>"),
+               Catch::Contains("expected only one of them"));
+    CHECK_THAT(error("roughdielectric", "<float name='int_ior' value='1.5'/><float name='ext_ior' "
+                                        "value='1.5'/>"),
+               Catch::Contains("expected two different indices"));
+    CHECK_THAT(error("mask", ""), Catch::Contains("has 0 nested BSDFs, expected one"));
+    CHECK_THAT(error("blendbsdf", "<bsdf type='diffuse'/><bsdf type='diffuse'/>"),
+               Catch::Contains("\"weight\" is missing"));
+    CHECK_THAT(error("normalmap", "<bsdf type='diffuse'/>"), Catch::Contains("\"normalmap\" is missing"));
+    CHECK_THAT(error("bumpmap", "<bsdf type='diffuse'/>"),
+               Catch::Contains("has 0 nested textures, expected one"));
+    CHECK_THAT(error("twosided", "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>"),
+               Catch::Contains("contains a mask, expected a BSDF that lets no light through"));
 }
 
 TEST_CASE("twosided takes one or two BSDFs, also by reference") {
@@ -124,12 +161,14 @@ TEST_CASE("twosided takes one or two BSDFs, also by reference") {
         <shape type="sphere"><bsdf type="twosided"><ref id="b"/><ref id="a"/></bsdf></shape>
         <shape type="sphere"><bsdf type="twosided"><ref id="a"/></bsdf></shape>
         <bsdf type="conductor" id="b"/>)");
-    const auto &two = std::get<TwosidedBsdf>(
-        scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(0).bsdf)).model);
+    const auto sides = [&](std::size_t shape) {
+        return std::get<TwosidedBsdf>(
+            scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf)).model);
+    };
+    const TwosidedBsdf two = sides(0);
     CHECK(scene.bsdfs.at(static_cast<std::size_t>(two.front)).id == "b");
     CHECK(scene.bsdfs.at(static_cast<std::size_t>(two.back)).id == "a");
-    const auto &one = std::get<TwosidedBsdf>(
-        scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(1).bsdf)).model);
+    const TwosidedBsdf one = sides(1);
     CHECK(one.front == one.back);
     CHECK(one.front == two.back);
 }
@@ -178,9 +217,9 @@ TEST_CASE("shapes without a BSDF are grey, lights black") {
     const Scene scene = load_text(R"(<shape type="disk"/>
         <shape type="rectangle"><emitter type="area"/></shape>)");
     const auto albedo = [&](std::size_t shape) {
-        const auto &surface = std::get<DiffuseBsdf>(
-            scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf)).model);
-        return scene.textures.at(static_cast<std::size_t>(surface.reflectance)).value;
+        const Bsdf &surface = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf));
+        const auto &diffuse = std::get<DiffuseBsdf>(surface.model);
+        return scene.textures.at(static_cast<std::size_t>(diffuse.reflectance)).value;
     };
     CHECK(albedo(0) == Rgb(.5));
     CHECK(albedo(1) == Rgb(0));
