@@ -36,13 +36,13 @@ def defaults():
                 re.findall(r"(\w+)\s*=\s*(-?\s*\w+)", text))
 
 
-def configuration(clrender, scene, folder):
+def configuration(clrender, scene, step, folder):
     """The values of a scene that differ from the defaults, as on a GPU."""
     said = output_of([str(clrender), str(scene), "-v", "-r", "8x8", "-s", "1", "--lanes", "1",
                       "-o", str(folder / "picture.pfm")]).stderr
     line = next(line for line in said.splitlines() if line.startswith("kernel: ") and "=" in line)
     config = dict(FIELD.findall(line))
-    config.update(LANES="1", TILE="1", BORDER="0")
+    config.update(LANES="1", TILE="1", BORDER="0", BVH_STEP=step)
     if config.get("FILTER") in ("3", "CLR_FILTER_SPLATTED"):
         config["FILTER"] = config["FILTER"].replace("3", "1").replace("SPLATTED", "SAMPLED")
     return config
@@ -65,13 +65,14 @@ def main():
     arguments.add_argument("scenes", nargs="*", type=pathlib.Path)
     arguments.add_argument("--clrender", type=pathlib.Path, default=ROOT / "build/clrender")
     arguments.add_argument("--ptxas", default="ptxas")
+    arguments.add_argument("--step", default="4", choices=["4", "8"], help="BVH_STEP (default: 4)")
     chosen = arguments.parse_args()
     scenes = chosen.scenes or sorted((ROOT / "scenes").glob("*.xml"))
     print(f"{'scene':<24}{'registers':>10}{'stack':>8}{'spilled':>9}")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for scene in scenes:
-            config = {**defaults(), **configuration(chosen.clrender, scene, folder)}
+            config = {**defaults(), **configuration(chosen.clrender, scene, chosen.step, folder)}
             registers, stack, spilled = cost(config, chosen.ptxas, folder)
             print(f"{scene.stem:<24}{registers:>10}{stack:>8}{spilled:>9}", flush=True)
     return 0

@@ -1,6 +1,7 @@
 #include "forced_features.h"
 
 #include "kernel_config.h"
+#include "shared/bsdf_parameters.h"
 
 #include <map>
 
@@ -29,8 +30,13 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_VERTEX_NORMALS, 1),
         CLR_SETTING(HAS_UVS, 1),
 #define CLR_BSDF(KIND, kind, width, lobes, meaning) CLR_SETTING(HAS_##KIND, 1),
+#define CLR_BSDF_NODE(KIND, meaning) CLR_SETTING(HAS_##KIND, 1),
 #include "shared/bsdf_list.def"
-#undef CLR_BSDF
+        CLR_SETTING(HAS_GGX, 1),
+        CLR_SETTING(HAS_BECKMANN, 1),
+        CLR_SETTING(HAS_TANGENTS, 1),
+        CLR_SETTING(BSDF_PARAMETERS, CLR_MOST_BSDF_PARAMETERS),
+        CLR_SETTING(BSDF_TEXTURED, (1 << CLR_MOST_BSDF_PARAMETERS) - 1),
         CLR_SETTING(RECORD_TABLE, 0),
         CLR_SETTING(MATERIALS_IN_RECORDS, 0),
         CLR_SETTING(MATERIAL_SHADES, CLR_SHADES_TINTS | CLR_SHADES_INDICES),

@@ -41,22 +41,50 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     const bool has_hierarchy = config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
     config.BRUTE_FORCE = has_hierarchy && sampling.brute_force ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
-    config.HAS_UVS = flat.textures.empty() ? 0 : 1;
+    config.HAS_UVS = flat.textures.empty() && !flat.has_tangents() ? 0 : 1;
     config.RECORD_TABLE = flat.lane_wise_count() <= CLR_TABLE_SIZE ? 1 : 0;
-    config.MATERIALS_IN_RECORDS = is_one_sided(flat) && flat.shape_of.empty() ? 1 : 0;
+}
+
+bool is_node(const Material &material) {
+    switch (material.kind & CLR_BSDF_KIND_MASK) {
+#define CLR_BSDF_NODE(KIND, meaning) case CLR_BSDF_##KIND:
+#include "shared/bsdf_list.def"
+        return true;
+    default:
+        return false;
+    }
+}
+
+/// How many parameters each material has in the pool, and which of them have textures.
+void set_parameters(const FlatScene &flat, KernelConfig &config) {
+    if (flat.materials.empty())
+        return;
+    const std::size_t count = flat.bsdf_parameters.size() / flat.materials.size();
+    config.BSDF_PARAMETERS = static_cast<int>(count);
+    for (std::size_t i = 0; i < flat.bsdf_parameters.size(); ++i)
+        if (flat.bsdf_parameters[i].texture != CLR_NONE && !is_node(flat.materials[i / count]))
+            config.BSDF_TEXTURED |= 1 << i % count;
 }
 
 void set_materials(const FlatScene &flat, KernelConfig &config) {
-    for (const Material &material : flat.materials)
-        switch (material.kind) {
-#define CLR_BSDF(KIND, kind, width, lobes, meaning)                                                \
-    case CLR_BSDF_##KIND:                                                                          \
-        config.HAS_##KIND = 1;                                                                     \
-        break;
+    const auto has_kind = [&](uint kind) {
+        return any(flat.materials,
+                   [&](const Material &m) { return (m.kind & CLR_BSDF_KIND_MASK) == kind; });
+    };
+    const auto has_flag = [&](uint flag) {
+        return any(flat.materials, [&](const Material &m) { return (m.kind & flag) != 0; });
+    };
+#define CLR_BSDF(KIND, kind, width, lobes, meaning) config.HAS_##KIND = has_kind(CLR_BSDF_##KIND);
+#define CLR_BSDF_NODE(KIND, meaning) config.HAS_##KIND = has_kind(CLR_BSDF_##KIND);
 #include "shared/bsdf_list.def"
-#undef CLR_BSDF
-        }
+    config.HAS_TANGENTS = has_flag(CLR_BSDF_TANGENTS);
+    config.HAS_BECKMANN = has_flag(CLR_BSDF_BECKMANN);
+    config.HAS_GGX = has_flag(CLR_BSDF_GGX);
+    // What is found at the root of a tree is not yet the material.
+    const bool has_trees = config.HAS_BLEND + config.HAS_NORMALMAP + config.HAS_BUMPMAP > 0;
+    config.MATERIALS_IN_RECORDS = is_one_sided(flat) && flat.shape_of.empty() && !has_trees ? 1 : 0;
     config.MATERIAL_SHADES = dielectric_shades(flat.materials);
+    set_parameters(flat, config);
     for (const TextureInfo &texture : flat.textures)
         switch (texture.kind) {
         case CLR_TEXTURE_BITMAP_U8:
@@ -156,6 +184,7 @@ KernelConfig config_of(const FlatScene &flat, const SamplingOptions &sampling,
     KernelConfig config;
     config.DOUBLE_PRECISION = CLR_DOUBLE;
     config.LANES = options.lanes;
+    config.BVH_STEP = options.bvh_step;
     config.PROFILE = options.profile ? 1 : 0;
     config.VARIANCE = options.variance ? 1 : 0;
     config.FILTER = filter_of(flat, sampling, options.splat_filters);
@@ -170,6 +199,7 @@ KernelConfig config_of(const FlatScene &flat, const SamplingOptions &sampling,
     set_integrator(flat, sampling, config);
     set_camera(flat, config);
     force_features(sampling.forced_features, config);
+    config.HAS_UVS |= config.HAS_TANGENTS;
     // The map is there, unless the scene's strategy forbids it.
     if (sampling.forced_features.count("ENVIRONMENT") != 0 && !flat.env_cdf.empty())
         config.ENVIRONMENT = CLR_ENVIRONMENT_MAP;

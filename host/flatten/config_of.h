@@ -12,6 +12,7 @@ struct ConfigOptions {
     int tile = 1; ///< pixels a side of what a work-item renders; more, where filters are splatted
     bool splat_filters = true; ///< samples serve all pixels that the filter reaches, where it is
                                ///< not too wide; else the filter is sampled
+    int bvh_step = 8;          ///< children of a node, and primitives of a block, tested at once
     bool profile = false;
     bool variance = false;
 };

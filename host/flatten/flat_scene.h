@@ -5,6 +5,7 @@
 #include "bvh_builder.h"
 #include "config/sampling_options.h"
 #include "scene/scene.h"
+#include "shared/bsdf_parameters.h"
 #include "shared/launch_data.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
@@ -67,6 +68,8 @@ struct FlatScene {
     [[nodiscard]] bool has_bvh_spheres() const {
         return spheres.size() > static_cast<std::size_t>(facts.sphere_count);
     }
+    /// Whether some material's shading frame follows dp/du.
+    [[nodiscard]] bool has_tangents() const;
     /// The lane-wise sphere that is the only light, or none.
     [[nodiscard]] int sole_light_sphere() const;
     [[nodiscard]] std::size_t bytes() const;

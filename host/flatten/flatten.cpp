@@ -1,5 +1,7 @@
 #include "flatten_parts.h"
 
+#include <algorithm>
+
 namespace clrender::inline CLR_PRECISION {
 
 std::size_t FlatScene::bytes() const {
@@ -13,6 +15,11 @@ int FlatScene::sole_light_sphere() const {
     if (!is_sphere || facts.environment == CLR_ENVIRONMENT_MAP || has_bvh_spheres())
         return none;
     return static_cast<int>(lights.front().prim);
+}
+
+bool FlatScene::has_tangents() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material &m) { return (m.kind & CLR_BSDF_TANGENTS) != 0; });
 }
 
 FlatScene flatten(const Scene &scene, const SamplingOptions &options) {

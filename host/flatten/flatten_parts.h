@@ -20,7 +20,6 @@ struct Flattening {
     FlatScene flat{};
     std::vector<Box> boxes{};                 ///< by Scene::shapes, in world coordinates
     std::map<int, uint> texture_index{};      ///< by Scene::textures
-    std::map<int, uint> material_index{};     ///< by Scene::bsdfs, not twosided
     std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
     std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
     std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none
@@ -34,7 +33,10 @@ struct Flattening {
         return options.forced_features.count(name) != 0;
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
-    [[nodiscard]] bool needs_uvs() const { return !flat.textures.empty() || wants("HAS_UVS"); }
+    [[nodiscard]] bool needs_uvs() const {
+        return !flat.textures.empty() || flat.has_tangents() || wants("HAS_UVS") ||
+               wants("HAS_TANGENTS");
+    }
 };
 
 /// Where the scene is put: the origin is the median of the places of its shapes, weighted by the

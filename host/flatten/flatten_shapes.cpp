@@ -28,12 +28,7 @@ Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
 bool is_opaque(const Scene &scene, const Shape &shape) {
     if (scene.sensor.near_clip || scene.integrator.kind == IntegratorKind::depth)
         return false;
-    const auto transmits = [&](int bsdf) {
-        return bsdf != none &&
-               scene.bsdfs[static_cast<std::size_t>(bsdf)].kind == BsdfKind::dielectric;
-    };
-    const Bsdf &bsdf = scene.bsdfs[static_cast<std::size_t>(shape.bsdf)];
-    if (transmits(shape.bsdf) || transmits(bsdf.front) || transmits(bsdf.back) ||
+    if (lets_light_through(scene, shape.bsdf) ||
         (shape.emitter != none && scene.integrator.hide_emitters))
         return false;
     const double distance =

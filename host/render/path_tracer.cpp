@@ -19,6 +19,10 @@ namespace {
 constexpr int cpu_tile = CLR_LEAST_TILE;
 constexpr int gpu_tile = 1;
 
+/// Children of a node tested at once: as many as a vector has lanes, or as few as leave registers.
+constexpr int cpu_bvh_step = 8;
+constexpr int gpu_bvh_step = 4;
+
 /// Work-items of a work-group, fixed: PoCL compiles anew for each size.
 constexpr std::size_t cpu_group = 1;
 constexpr std::size_t gpu_group = 64;
@@ -72,6 +76,10 @@ void launch_nothing(const cl::Context &context, const cl::CommandQueue &queue, c
 }
 
 } // namespace
+
+int bvh_step_for(const DeviceEntry &entry) {
+    return entry.is_cpu ? cpu_bvh_step : gpu_bvh_step;
+}
 
 int tile_for(const DeviceEntry &entry) {
     return entry.is_cpu ? cpu_tile : gpu_tile;

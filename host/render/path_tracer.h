@@ -19,6 +19,9 @@
 
 namespace clrender::inline CLR_PRECISION {
 
+/// How many children of a node the device tests at once (BVH_STEP).
+int bvh_step_for(const DeviceEntry &entry);
+
 /// The side of a work-item's square that suits the device, where filters are not splatted.
 int tile_for(const DeviceEntry &entry);
 

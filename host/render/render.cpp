@@ -49,6 +49,7 @@ KernelConfig configure(const FlatScene &flat, const DeviceEntry &entry,
     how.lanes = lanes_for(entry, options);
     how.tile = tile_for(entry);
     how.splat_filters = entry.is_cpu;
+    how.bvh_step = bvh_step_for(entry);
     how.profile = options.profile != nullptr;
     how.variance = options.with_variance;
     return config_of(flat, options.sampling, how);

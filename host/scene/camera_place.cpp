@@ -62,10 +62,13 @@ void warn_of_enclosed_camera(const Scene &scene) {
     for (const Shape &shape : scene.shapes) {
         if (shape.bsdf == none || shape.emitter != none)
             continue;
-        const BsdfKind kind = scene.bsdfs[static_cast<std::size_t>(shape.bsdf)].kind;
-        if (kind == BsdfKind::twosided || !encloses(shape, eye))
+        const BsdfModel &model = scene.bsdfs[static_cast<std::size_t>(shape.bsdf)].model;
+        const bool is_glass = std::holds_alternative<DielectricBsdf>(model) ||
+                              std::holds_alternative<RoughDielectricBsdf>(model);
+        if (std::holds_alternative<TwosidedBsdf>(model) || !encloses(shape, eye) ||
+            (lets_light_through(scene, shape.bsdf) && !is_glass))
             continue;
-        log::warn(shape.where, kind == BsdfKind::dielectric
+        log::warn(shape.where, is_glass
                                    ? "the camera is inside of this solid of glass"
                                    : "the camera is inside of this solid: it sees a black inner "
                                      "side");

@@ -3,6 +3,7 @@
 
 #include "mitsuba_document.h"
 #include "mitsuba_properties.h"
+#include "named_media.h"
 #include "scene.h"
 #include "scene_files.h"
 #include "spectrum.h"
@@ -10,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -45,17 +47,22 @@ private:
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     /// The colour or texture `name` of an object, or none.
     int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
-    /// The same where only one colour for the whole surface is supported.
+    /// The texture of the numbers `name`.
+    int read_number(Properties &properties, const std::string &name, double fallback);
+    /// The same as read_colour() where only one colour for the whole surface is supported.
     Rgb read_constant(Properties &properties, const std::string &name, SpectrumUse use,
                       const Rgb &fallback);
 
     // mitsuba_bsdfs.cpp; all return indices into Scene::bsdfs
     int read_bsdf(int object);
-    void read_diffuse(Properties &properties, Bsdf &bsdf);
-    void read_conductor(Properties &properties, Bsdf &bsdf);
-    void read_dielectric(Properties &properties, Bsdf &bsdf);
-    void read_twosided(Properties &properties, Bsdf &bsdf);
+    std::vector<int> read_nested(Properties &properties, std::size_t count);
     int default_bsdf(double reflectance);
+    BsdfModel read_model_of(const std::string &type, Properties &properties);
+    // bsdf_<kind>.cpp
+#define CLR_PLUGIN(type, Model) void read_model(Properties &properties, Model &bsdf);
+#include "bsdf_plugins.def"
+#undef CLR_PLUGIN
+    MicrofacetModel read_microfacets(Properties &properties);
 
     // mitsuba_shapes.cpp
     void read_shape(int object);
@@ -87,6 +94,12 @@ private:
     SceneFiles files_;
     std::vector<std::size_t> shapes_from_files_; ///< places in Scene::shapes
 };
+
+/// The metal that a conductor names; it then states neither eta nor k.
+std::optional<ComplexIor> read_metal(Properties &properties);
+/// int_ior and ext_ior, numbers or names of media.
+IndicesOfRefraction read_iors(Properties &properties);
+PerturbedNormals read_perturbed_normals(Properties &properties);
 
 /// One of the reconstruction filters.
 ReconstructionFilter read_filter(const Document &document, int object);

@@ -59,6 +59,18 @@ std::optional<Rgb> colour_of(const Properties &properties, const Property &prope
     return std::nullopt;
 }
 
+double mean_of(const Rgb &rgb) {
+    return (rgb.r + rgb.g + rgb.b) / 3;
+}
+
+/// What Mitsuba makes of colours where it asks for a number: constant ones give their mean, bitmaps
+/// their luminance.
+void make_number(Texture &texture) {
+    texture.is_number = true;
+    for (Rgb *constant : {&texture.value, &texture.color0, &texture.color1})
+        *constant = Rgb(mean_of(*constant));
+}
+
 } // namespace
 
 int SceneReader::add_constant(const Rgb &value) {
@@ -75,7 +87,7 @@ int SceneReader::read_colour(Properties &properties, const std::string &name, Sp
             properties.fail(name, "is " + type_name(property->value) +
                                       ", expected an rgb, a float, a spectrum or a texture");
         check_range(properties, name, *rgb, use, std::holds_alternative<Colour>(property->value));
-        return add_constant(*rgb);
+        return add_constant(use == SpectrumUse::number ? Rgb(mean_of(*rgb)) : *rgb);
     }
     const Child *child = properties.child(name);
     if (child == nullptr)
@@ -99,6 +111,11 @@ Rgb SceneReader::read_constant(Properties &properties, const std::string &name, 
     return texture.value;
 }
 
+int SceneReader::read_number(Properties &properties, const std::string &name, double fallback) {
+    const int index = read_colour(properties, name, SpectrumUse::number);
+    return index != none ? index : add_constant(Rgb(fallback));
+}
+
 int SceneReader::read_texture(int object, SpectrumUse use) {
     if (const auto known = textures_.find({object, use}); known != textures_.end())
         return known->second;
@@ -114,6 +131,8 @@ int SceneReader::read_texture(int object, SpectrumUse use) {
     else
         fail_unsupported(document_, properties.object(), texture_types);
     properties.finish();
+    if (use == SpectrumUse::number)
+        make_number(scene_.textures.at(static_cast<std::size_t>(index)));
     textures_[{object, use}] = index;
     return index;
 }

@@ -58,12 +58,8 @@ int add_bsdf(Scene &scene, const Bsdf &bsdf) {
 
 /// Diffuse on both sides: models are seldom closed.
 int add_diffuse(Scene &scene, int reflectance) {
-    Bsdf diffuse;
-    diffuse.reflectance = reflectance;
-    Bsdf twosided;
-    twosided.kind = BsdfKind::twosided;
-    twosided.front = twosided.back = add_bsdf(scene, diffuse);
-    return add_bsdf(scene, twosided);
+    const int side = add_bsdf(scene, {DiffuseBsdf{reflectance}, {}, {}});
+    return add_bsdf(scene, {TwosidedBsdf{side, side}, {}, {}});
 }
 
 /// Textures that may turn out not to be readable, and the colour that then takes their place.
@@ -76,13 +72,10 @@ int add_material(Scene &scene, const ObjMaterial &material, SceneFiles &files,
     bsdf.id = material.name;
     switch (surface_of(material)) {
     case ObjSurface::glass:
-        bsdf.kind = BsdfKind::dielectric;
-        bsdf.int_ior = material.ior > 1 ? material.ior : 1.5;
-        bsdf.ext_ior = 1;
+        bsdf.model = DielectricBsdf{{material.ior > 1 ? material.ior : 1.5, 1}};
         return add_bsdf(scene, bsdf);
     case ObjSurface::mirror:
-        bsdf.kind = BsdfKind::conductor;
-        bsdf.specular_reflectance = add_color(scene, reflectance(material.specular));
+        bsdf.model = ConductorBsdf{add_color(scene, reflectance(material.specular))};
         return add_bsdf(scene, bsdf);
     case ObjSurface::diffuse:
         break;

@@ -4,6 +4,7 @@
 
 #include "../error.h"
 #include "../image/image.h"
+#include "bsdf.h"
 
 #include <glm/glm.hpp>
 
@@ -16,9 +17,6 @@
 
 namespace clrender {
 
-using Rgb = glm::dvec3;         ///< linear sRGB primaries, may exceed 1 for radiance
-inline constexpr int none = -1; ///< "no such index"
-
 enum class TextureKind { constant, bitmap, checkerboard };
 enum class TextureFilter { bilinear, nearest };
 enum class TextureWrap { repeat, mirror, clamp };
@@ -28,6 +26,8 @@ enum class TextureWrap { repeat, mirror, clamp };
 /// shows color0 where the fractions of u and v lie both above or both below one half, else color1.
 struct Texture {
     TextureKind kind = TextureKind::constant;
+    bool is_number = false;              ///< one value is asked for, not a colour: the mean of a
+                                         ///< constant one, the luminance of a bitmap
     Rgb value{0.5};                      ///< constant
     std::shared_ptr<const Image> bitmap; ///< bitmap; shared by all textures that name the same file
     bool raw = false; ///< bitmap: u8 data are linear, not sRGB-encoded (f32: always)
@@ -35,22 +35,6 @@ struct Texture {
     TextureWrap wrap = TextureWrap::repeat;
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard
     glm::dmat3 to_uv{1.0};
-};
-
-enum class BsdfKind { diffuse, conductor, dielectric, twosided };
-
-/// One BSDF. Colours are indices into Scene::textures.
-struct Bsdf {
-    BsdfKind kind = BsdfKind::diffuse;
-    int reflectance = none;            ///< diffuse
-    int specular_reflectance = none;   ///< conductor, dielectric; none = 1
-    int specular_transmittance = none; ///< dielectric; none = 1
-    bool perfect_mirror = true;        ///< conductor with material "none": Fresnel factor 1
-    Rgb eta{0.0}, k{1.0};              ///< conductor, when not perfect_mirror
-    double int_ior = 1.5046, ext_ior = 1.000277; ///< dielectric (bk7 in air)
-    int front = none, back = none; ///< twosided: indices of the nested BSDFs (equal if only one)
-    std::string id;
-    SourceLocation where;
 };
 
 /// An indexed triangle mesh in its own object space, before Shape::to_world.

@@ -15,8 +15,9 @@ struct Spectrum {
 
 /// What a spectrum stands for decides its conversion: quantities that light is multiplied with are
 /// weighted by the illuminant D65 (so that 1 is white), lights are not. Reflectances are clamped to
-/// [0, 1], everything else to be no less than 0.
-enum class SpectrumUse { reflectance, refractive_index, emission };
+/// [0, 1], everything else to be no less than 0. `number`: one value is asked for; `data`: three
+/// that are no colour.
+enum class SpectrumUse { reflectance, refractive_index, emission, number, data };
 
 struct SpectrumColour {
     Rgb rgb;

@@ -40,13 +40,11 @@ struct Builder {
     }
 
     int diffuse(int texture) {
-        Bsdf bsdf;
-        bsdf.reflectance = texture;
-        return add(bsdf);
+        return add(DiffuseBsdf{texture});
     }
 
-    int add(const Bsdf &bsdf) {
-        scene.bsdfs.push_back(bsdf);
+    int add(const BsdfModel &model) {
+        scene.bsdfs.push_back({model, {}, {}});
         return static_cast<int>(scene.bsdfs.size()) - 1;
     }
 
@@ -104,12 +102,8 @@ Check compare(const std::string &what, const Mean &mean, double expected, double
 Check check_furnace(const RenderOptions &how) {
     Builder b(24, 40, {0, 0, -6}, {0, 0, 0});
     b.shape(ShapeKind::sphere, b.diffuse(b.constant(1)), placed({-1.3, 0, 0}, 1));
-    Bsdf glass;
-    glass.kind = BsdfKind::dielectric;
-    b.shape(ShapeKind::sphere, b.add(glass), placed({1.3, 0, 0}, 1));
-    Bsdf mirror;
-    mirror.kind = BsdfKind::conductor;
-    b.shape(ShapeKind::sphere, b.add(mirror), placed({0, 1.6, 0.5}, 0.8));
+    b.shape(ShapeKind::sphere, b.add(DielectricBsdf{}), placed({1.3, 0, 0}, 1));
+    b.shape(ShapeKind::sphere, b.add(ConductorBsdf{}), placed({0, 1.6, 0.5}, 0.8));
     Emitter sky;
     sky.kind = EmitterKind::constant;
     sky.radiance = b.constant(1);
@@ -168,7 +162,7 @@ Check check_lights(const RenderOptions &how) {
     // The rectangle's +z becomes up.
     b.shape(ShapeKind::rectangle, b.diffuse(0),
             glm::rotate(placed(here, 10), -pi / 2, glm::dvec3(1, 0, 0)));
-    b.scene.bsdfs.back().reflectance = 0;
+    b.scene.bsdfs.back().model = DiffuseBsdf{0};
 
     const glm::dvec3 sphere_at(-2, 2, 1);
     b.shape(ShapeKind::sphere, black, placed(sphere_at, 0.5));

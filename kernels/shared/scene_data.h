@@ -77,17 +77,26 @@ typedef struct {
 } PrimitiveRecord;
 CLR_STATIC_WORDS(PrimitiveRecord, 24);
 
-/* Material::kind. */
+/* Material::kind: the kind, and flags. */
 enum {
 #define CLR_BSDF(KIND, kind, width, lobes, meaning) CLR_BSDF_##KIND,
+#define CLR_BSDF_NODE(KIND, meaning) CLR_BSDF_##KIND,
 #include "shared/bsdf_list.def"
-#undef CLR_BSDF
     CLR_BSDF_KINDS
 };
+#define CLR_BSDF_FIRST_NODE CLR_BSDF_BLEND
+#define CLR_BSDF_KIND_MASK 0xffu
+#define CLR_BSDF_GGX 0x100u           /* microfacets are distributed by GGX */
+#define CLR_BSDF_BECKMANN 0x200u      /* or by Beckmann */
+#define CLR_BSDF_TANGENTS 0x400u      /* the frame has to follow dp/du */
+#define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
+#define CLR_BSDF_SHADOWS_NORMALS 0x1000u
+#define CLR_BSDF_MIRRORED 0x2000u /* shown by `twosided` on the back of the surface */
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
-   Dielectric: eta[0] is interior over exterior index, eta[1] its inverse. */
+   Dielectric: eta[0] is interior over exterior index, eta[1] its inverse. All other kinds have
+   what they need in the pool of parameters, from number `parameters` on (bsdf_parameters.h). */
 typedef struct {
     clr_real color[3];
     clr_word kind;
@@ -96,7 +105,7 @@ typedef struct {
     clr_real eta[3];
     clr_word texture2;
     clr_real k[3];
-    clr_word pad;
+    clr_word parameters;
 } Material;
 CLR_STATIC_WORDS(Material, 16);
 
@@ -203,7 +212,7 @@ typedef struct {
     clr_real color0[3];
     uint decode;
     clr_real color1[3];
-    uint pad;
+    uint is_number; /* a bitmap's luminance is asked for */
 } TextureInfo;
 CLR_STATIC_SIZE(TextureInfo, CLR_EITHER(80, 136));
 

@@ -71,6 +71,19 @@ def write_images():
     mi.Bitmap(4 * pattern(16, 12) ** 2).write(str(DATA / "glow.exr"))
 
 
+def write_maps():
+    """A height that repeats, of 8 bits, and the normals of its surface as colours."""
+    height, width = 12, 16
+    y, x = np.mgrid[0:height, 0:width] * 2 * np.pi
+    u, v = x / width, y / height
+    heights = 0.5 + 0.25 * np.sin(2 * u + 1) + 0.2 * np.sin(u - 3 * v)
+    mi.Bitmap(to_bytes(heights[:, :, None])).write(str(DATA / "heights.png"))
+    normals = np.stack([-0.5 * np.cos(2 * u + 1) - 0.3 * np.cos(u - 3 * v), 0.6 * np.cos(u - 3 * v),
+                        np.ones_like(u)], -1)
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    mi.Bitmap(to_bytes(0.5 + 0.5 * normals)).write(str(DATA / "normals.png"))
+
+
 def write_environment():
     """A sky that is brighter above, a coloured horizon, and a sun of 2 x 2 pixels."""
     height, width = 17, 32
@@ -166,5 +179,6 @@ if __name__ == "__main__":
     mi.set_variant("scalar_rgb")
     DATA.mkdir(exist_ok=True)
     write_images()
+    write_maps()
     write_environment()
     write_meshes()

@@ -1,0 +1,15 @@
+#include "bsdf_packing.h"
+
+namespace clrender::inline CLR_PRECISION {
+
+PackedBsdf pack_bsdf(MaterialPacker &packer, const DielectricBsdf &bsdf, BsdfSide) {
+    PackedBsdf packed(CLR_BSDF_DIELECTRIC);
+    Material &m = packed.material;
+    m.texture = flatten_texture(packer.work, bsdf.specular_reflectance, Rgb{1.0}, m.color);
+    m.texture2 = flatten_texture(packer.work, bsdf.specular_transmittance, Rgb{1.0}, m.color2);
+    const double eta = bsdf.ior.interior / bsdf.ior.exterior;
+    store(m.eta, Rgb{eta, 1 / eta, 0});
+    return packed;
+}
+
+} // namespace clrender::inline CLR_PRECISION

@@ -1,0 +1,17 @@
+#include "bsdf_packing.h"
+
+namespace clrender::inline CLR_PRECISION {
+
+PackedBsdf pack_bsdf(MaterialPacker &packer, const RoughDielectricBsdf &bsdf, BsdfSide) {
+    PackedBsdf packed(CLR_BSDF_ROUGHDIELECTRIC | flags_of(bsdf.microfacets));
+    packed.parameters.resize(CLR_ROUGHDIELECTRIC_PARAMETERS);
+    packed.parameters[CLR_ROUGHDIELECTRIC_ALPHA_U] = packer.colour(bsdf.microfacets.alpha_u);
+    packed.parameters[CLR_ROUGHDIELECTRIC_ALPHA_V] = packer.colour(bsdf.microfacets.alpha_v);
+    packed.parameters[CLR_ROUGHDIELECTRIC_REFLECTANCE] = packer.colour(bsdf.specular_reflectance);
+    packed.parameters[CLR_ROUGHDIELECTRIC_TRANSMITTANCE] =
+        packer.colour(bsdf.specular_transmittance);
+    packed.parameters[CLR_ROUGHDIELECTRIC_ETA] = MaterialPacker::eta(bsdf.ior);
+    return packed;
+}
+
+} // namespace clrender::inline CLR_PRECISION

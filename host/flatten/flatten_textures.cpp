@@ -1,0 +1,119 @@
+#include "flatten_parts.h"
+
+#include <cmath>
+
+namespace clrender::inline CLR_PRECISION {
+
+namespace {
+
+/// Byte `channel` of pixel `at`, grey images giving the same for all.
+uint byte_of(const Image &image, std::size_t at, int channel) {
+    const int channels = image.channels;
+    const int source = channels >= 3 ? channel : 0;
+    return image.u8[at * static_cast<std::size_t>(channels) + static_cast<std::size_t>(source)];
+}
+
+clr_real float_of(const Image &image, std::size_t at, int channel) {
+    const int channels = image.channels;
+    const int source = channels >= 3 ? channel : 0;
+    return image.f32[at * static_cast<std::size_t>(channels) + static_cast<std::size_t>(source)];
+}
+
+/// Appends the pixels of an image, once however many textures share it; returns its offset.
+uint append_texels(const Image &image, FlatScene &flat) {
+    const auto count =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    if (image.type == PixelType::u8) {
+        const auto offset = static_cast<uint>(flat.texels_u8.size());
+        flat.texels_u8.reserve(flat.texels_u8.size() + count);
+        for (std::size_t i = 0; i < count; ++i)
+            flat.texels_u8.push_back(byte_of(image, i, 0) | byte_of(image, i, 1) << 8 |
+                                     byte_of(image, i, 2) << 16);
+        return offset;
+    }
+    const auto offset = static_cast<uint>(flat.texels_f32.size() / 3);
+    flat.texels_f32.reserve(flat.texels_f32.size() + 3 * count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c)
+            flat.texels_f32.push_back(float_of(image, i, c));
+    return offset;
+}
+
+/// The offset of an image that an earlier texture has appended, or a new one.
+uint offset_of_image(const std::shared_ptr<const Image> &image, Flattening &work) {
+    for (const auto &[other, index] : work.texture_index) {
+        const Texture &before = work.scene.textures[static_cast<std::size_t>(other)];
+        if (before.kind == TextureKind::bitmap && before.bitmap == image)
+            return work.flat.textures[index].offset;
+    }
+    return append_texels(*image, work.flat);
+}
+
+TextureInfo describe(const Texture &source, uint offset) {
+    TextureInfo t{};
+    for (int row = 0; row < 2; ++row)
+        for (int column = 0; column < 3; ++column)
+            t.to_uv[3 * row + column] = static_cast<clr_real>(source.to_uv[column][row]);
+    if (source.kind == TextureKind::checkerboard) {
+        t.kind = CLR_TEXTURE_CHECKERBOARD;
+        store(t.color0, source.color0);
+        store(t.color1, source.color1);
+        return t;
+    }
+    const Image &image = *source.bitmap;
+    t.kind = image.type == PixelType::u8 ? CLR_TEXTURE_BITMAP_U8 : CLR_TEXTURE_BITMAP_F32;
+    t.wrap = source.wrap == TextureWrap::repeat   ? CLR_WRAP_REPEAT
+             : source.wrap == TextureWrap::mirror ? CLR_WRAP_MIRROR
+                                                  : CLR_WRAP_CLAMP;
+    t.width = static_cast<uint>(image.width);
+    t.height = static_cast<uint>(image.height);
+    t.offset = offset;
+    t.nearest = source.filter == TextureFilter::nearest ? 1 : 0;
+    t.decode = source.raw ? 0 : 1;
+    t.is_number = source.is_number ? 1 : 0;
+    return t;
+}
+
+/// 256 linear values, then the same through the sRGB transfer function.
+std::vector<clr_real> decode_table() {
+    std::vector<clr_real> table(512);
+    for (std::size_t i = 0; i < 256; ++i) {
+        const double value = static_cast<double>(i) / 255;
+        table[i] = static_cast<clr_real>(value);
+        table[256 + i] = static_cast<clr_real>(srgb_decode(value));
+    }
+    return table;
+}
+
+} // namespace
+
+uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant) {
+    FlatScene &flat = work.flat;
+    Rgb value = absent;
+    const Texture *source = nullptr;
+    if (texture != none) {
+        source = &work.scene.textures[static_cast<std::size_t>(texture)];
+        value = source->value;
+    }
+    if (source == nullptr || source->kind == TextureKind::constant) {
+        for (int c = 0; c < 3; ++c)
+            constant[c] = static_cast<clr_real>(value[c]);
+        return CLR_NONE;
+    }
+
+    // The same texture under two materials is described once.
+    const auto known = work.texture_index.find(texture);
+    if (known != work.texture_index.end())
+        return known->second;
+    uint offset = 0;
+    if (source->kind == TextureKind::bitmap)
+        offset = offset_of_image(source->bitmap, work);
+    if (flat.decode.empty())
+        flat.decode = decode_table();
+    const auto index = static_cast<uint>(flat.textures.size());
+    flat.textures.push_back(describe(*source, offset));
+    work.texture_index[texture] = index;
+    return index;
+}
+
+} // namespace clrender::inline CLR_PRECISION

@@ -1,0 +1,17 @@
+#include "mitsuba_scene.h"
+
+namespace clrender::mitsuba {
+
+void SceneReader::read_model(Properties &properties, BumpMapBsdf &bsdf) {
+    const auto textures = properties.children("texture");
+    if (textures.size() != 1)
+        throw InputError(properties.where(), properties.description() + " has " +
+                                                 std::to_string(textures.size()) +
+                                                 " nested textures, expected one");
+    bsdf.height = read_texture(textures.front()->object, SpectrumUse::number);
+    bsdf.scale = properties.number("scale", 1);
+    bsdf.normals = read_perturbed_normals(properties);
+    bsdf.nested = read_nested(properties, 1).front();
+}
+
+} // namespace clrender::mitsuba
