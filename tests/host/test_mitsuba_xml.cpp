@@ -29,17 +29,19 @@ void check_matrix(const glm::dmat4 &actual, const std::array<double, 16> &rows) 
 Rgb reflectance(const std::string &value) {
     const Scene scene =
         load_text(R"(<shape type="sphere"><bsdf type="diffuse">)" + value + "</bsdf></shape>");
-    return scene.textures.at(static_cast<std::size_t>(scene.bsdfs.at(0).reflectance)).value;
+    const auto &diffuse = std::get<DiffuseBsdf>(scene.bsdfs.at(0).model);
+    return scene.textures.at(static_cast<std::size_t>(diffuse.reflectance)).value;
 }
 
 Rgb intensity(const std::string &value) {
     return load_text(R"(<emitter type="point">)" + value + "</emitter>").emitters.at(0).intensity;
 }
 
-Bsdf bsdf(const std::string &type, const std::string &content) {
-    return load_text(R"(<shape type="sphere"><bsdf type=")" + type + "\">" + content +
-                     "</bsdf></shape>")
-        .bsdfs.at(0);
+template <typename Model> Model bsdf(const std::string &type, const std::string &content) {
+    return std::get<Model>(load_text(R"(<shape type="sphere"><bsdf type=")" + type + "\">" +
+                                     content + "</bsdf></shape>")
+                               .bsdfs.at(0)
+                               .model);
 }
 
 glm::dmat4 transform(const std::string &steps) {
@@ -93,26 +95,28 @@ TEST_CASE("colours of lights") {
 }
 
 TEST_CASE("conductors") {
-    const Bsdf mirror = bsdf("conductor", "");
+    const auto mirror = bsdf<ConductorBsdf>("conductor", "");
     CHECK(mirror.perfect_mirror);
-    const Bsdf gold = bsdf("conductor", R"(<string name="material" value="Au"/>)");
+    const auto gold = bsdf<ConductorBsdf>("conductor", R"(<string name="material" value="Au"/>)");
     CHECK_FALSE(gold.perfect_mirror);
     check_rgb(gold.eta, {.143036, .375307, 1.442045});
     check_rgb(gold.k, {3.982997, 2.385557, 1.603359});
-    const Bsdf stated = bsdf("conductor", R"(<spectrum name="eta" value="400:10 500:5 600:9 700:2"/>
+    const auto stated =
+        bsdf<ConductorBsdf>("conductor", R"(<spectrum name="eta" value="400:10 500:5 600:9 700:2"/>
                                              <rgb name="k" value="1 2 3"/>)");
     check_rgb(stated.eta, {8.59416, 6.54435, 7.29033});
     check_rgb(stated.k, {1, 2, 3});
 }
 
 TEST_CASE("dielectrics") {
-    const Bsdf glass = bsdf("dielectric", "");
-    CHECK(glass.int_ior == 1.5046);
-    CHECK(glass.ext_ior == 1.000277);
-    const Bsdf named = bsdf("dielectric", R"(<string name="int_ior" value="Diamond"/>
+    const IndicesOfRefraction glass = bsdf<DielectricBsdf>("dielectric", "").ior;
+    CHECK(glass.interior == 1.5046);
+    CHECK(glass.exterior == 1.000277);
+    const auto named =
+        bsdf<DielectricBsdf>("dielectric", R"(<string name="int_ior" value="Diamond"/>
                                              <float name="ext_ior" value="1.3"/>)");
-    CHECK(named.int_ior == 2.419);
-    CHECK(named.ext_ior == 1.3);
+    CHECK(named.ior.interior == 2.419);
+    CHECK(named.ior.exterior == 1.3);
 }
 
 TEST_CASE("twosided takes one or two BSDFs, also by reference") {
@@ -120,10 +124,12 @@ TEST_CASE("twosided takes one or two BSDFs, also by reference") {
         <shape type="sphere"><bsdf type="twosided"><ref id="b"/><ref id="a"/></bsdf></shape>
         <shape type="sphere"><bsdf type="twosided"><ref id="a"/></bsdf></shape>
         <bsdf type="conductor" id="b"/>)");
-    const Bsdf &two = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(0).bsdf));
+    const auto &two = std::get<TwosidedBsdf>(
+        scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(0).bsdf)).model);
     CHECK(scene.bsdfs.at(static_cast<std::size_t>(two.front)).id == "b");
     CHECK(scene.bsdfs.at(static_cast<std::size_t>(two.back)).id == "a");
-    const Bsdf &one = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(1).bsdf));
+    const auto &one = std::get<TwosidedBsdf>(
+        scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(1).bsdf)).model);
     CHECK(one.front == one.back);
     CHECK(one.front == two.back);
 }
@@ -172,7 +178,8 @@ TEST_CASE("shapes without a BSDF are grey, lights black") {
     const Scene scene = load_text(R"(<shape type="disk"/>
         <shape type="rectangle"><emitter type="area"/></shape>)");
     const auto albedo = [&](std::size_t shape) {
-        const Bsdf &surface = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf));
+        const auto &surface = std::get<DiffuseBsdf>(
+            scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf)).model);
         return scene.textures.at(static_cast<std::size_t>(surface.reflectance)).value;
     };
     CHECK(albedo(0) == Rgb(.5));
@@ -255,8 +262,8 @@ TEST_CASE("textures") {
         <texture type="checkerboard" name="reflectance"><rgb name="color0" value=".1 .2 .3"/>
         <transform name="to_uv"><scale x="2" y="3"/><translate x=".1"/></transform></texture>
         </bsdf></shape>)");
-    const Texture &board =
-        scene.textures.at(static_cast<std::size_t>(scene.bsdfs.at(0).reflectance));
+    const auto &diffuse = std::get<DiffuseBsdf>(scene.bsdfs.at(0).model);
+    const Texture &board = scene.textures.at(static_cast<std::size_t>(diffuse.reflectance));
     CHECK(board.kind == TextureKind::checkerboard);
     check_rgb(board.color0, {.1, .2, .3});
     check_rgb(board.color1, Rgb(.2));
