@@ -201,7 +201,10 @@ CLR_STATIC_WORDS(LightNode, 24);
 #define CLR_WRAP_CLAMP 2u
 
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
-   bytes in the u8 array (through decode table `decode`: 0 linear, 1 sRGB), or triples of floats. */
+   bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. */
+#define CLR_DECODE_LINEAR 0u
+#define CLR_DECODE_SRGB 1u
+#define CLR_DECODE_HALF 2u /* added: the same, rounded to half precision */
 typedef struct {
     clr_real to_uv[6];
     uint kind;

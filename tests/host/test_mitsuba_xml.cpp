@@ -311,6 +311,22 @@ TEST_CASE("textures") {
     CHECK(uv.y == Approx(3));
 }
 
+TEST_CASE("constants without a colour space") {
+    const auto raw = [](const std::string &value) {
+        return R"(<texture type="rawconstant" name="reflectance">)" + value + "</texture>";
+    };
+    check_rgb(reflectance(raw(R"(<float name="value" value=".5"/>)")), Rgb(.5));
+    check_rgb(reflectance(raw(R"(<vector name="value" value=".5, .25, 0"/>)")), {.5, .25, 0});
+    const auto error = [&](const std::string &value) {
+        return error_of_text(R"(<shape type="sphere"><bsdf type="diffuse">)" + raw(value) +
+                             "</bsdf></shape>");
+    };
+    CHECK_THAT(error(""), Catch::StartsWith("2: ") && Catch::Contains("is missing"));
+    CHECK_THAT(error(R"(<rgb name="value" value=".5"/>)"),
+               Catch::Contains("expected a float or a vector"));
+    CHECK_THAT(error(R"(<vector name="value" value=".5, -1, 0"/>)"), Catch::Contains("negative"));
+}
+
 TEST_CASE("pictures of scenes hold finite values, and none below zero") {
     const ScratchFolder folder;
     const auto pfm = [&](float value) {
