@@ -48,7 +48,7 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.ahead = p.start_t_max = p.t_max;
     p.start = p.o;
 #endif
-#if INTEGRATOR == 1
+#if INTEGRATOR == CLR_INTEGRATOR_DEPTH
     p.skipped = p.t_max;
 #endif
     int idle_steps = 0, busy_steps = 0;

@@ -34,6 +34,12 @@ inline BsdfSides sides_of(const RoughDielectricBsdf &) {
 inline BsdfSides sides_of(const ThinDielectricBsdf &) {
     return BsdfSides::both;
 }
+inline BsdfSides sides_of(const PrincipledBsdf &bsdf) {
+    return bsdf.spec_trans == none ? BsdfSides::front : BsdfSides::both;
+}
+inline BsdfSides sides_of(const PrincipledThinBsdf &) {
+    return BsdfSides::both;
+}
 inline BsdfSides sides_of(const NullBsdf &) {
     return BsdfSides::both;
 }
@@ -93,6 +99,12 @@ private:
 #include "scene/bsdf_plugins.def"
 #undef CLR_PLUGIN
 
+/// Sets the parameters of a plastic whose boundary reflects this share of diffuse light from
+/// inside.
+void pack_plastic(MaterialPacker &packer, const PlasticBsdf &bsdf, double internal_reflectance,
+                  PackedBsdf &packed);
+/// The flags of a principled BSDF with this texture of anisotropy.
+uint burley_flags(const MaterialPacker &packer, int anisotropic);
 /// The flags that a microfacet model gives a material.
 uint flags_of(const MicrofacetModel &model);
 /// Those that the map of a side gives it.

@@ -72,30 +72,6 @@ void flatten_integrator(Flattening &work) {
 /// A pixel's width on the image plane at distance 1 from which on float32 directions do for pixels.
 constexpr double narrow_pixel = CLR_EITHER(0x1p-17, 0x1p-46);
 
-/// The depths between which a shape lies, seen from the eye along `axis`.
-struct DepthRange {
-    double nearest, farthest;
-};
-
-DepthRange depth_range(const Shape &shape, const Box &box, const glm::dvec3 &eye,
-                       const glm::dvec3 &axis) {
-    if (shape.kind == ShapeKind::sphere) {
-        const double middle = glm::dot(glm::dvec3(shape.to_world[3]) - eye, axis);
-        return {middle - sphere_radius(shape), middle + sphere_radius(shape)};
-    }
-    DepthRange range{std::numeric_limits<double>::infinity(),
-                     -std::numeric_limits<double>::infinity()};
-    for (int i = 0; i < 8 && !box.empty(); ++i) {
-        const glm::dvec3 corner((i & 1) != 0 ? box.high.x : box.low.x,
-                                (i & 2) != 0 ? box.high.y : box.low.y,
-                                (i & 4) != 0 ? box.high.z : box.low.z);
-        const double depth = glm::dot(corner - eye, axis);
-        range.nearest = std::min(range.nearest, depth);
-        range.farthest = std::max(range.farthest, depth);
-    }
-    return range;
-}
-
 /// The depth at which camera rays start, in scene units: that of the nearest shape, so that neither
 /// the eye's place nor the direction loses pixels to rounding, however far away the eye is. Where a
 /// `narrow` angle is seen, and some shape begins long before the middle of the scene, rays come in
@@ -106,9 +82,9 @@ double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
     const double unit = 1 / work.flat.placement.scale;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-        const DepthRange range = depth_range(scene.shapes[i], work.boxes[i], eye, axis);
-        if (range.farthest > 0)
-            nearest = std::min(nearest, range.nearest);
+        const Range depths = shape_range(scene.shapes[i], work.boxes[i], eye, axis);
+        if (depths.high > 0)
+            nearest = std::min(nearest, depths.low);
     }
     constexpr double margin = 0x1p-4, reach = 4, far_away = 16;
     const double before_all = std::isfinite(nearest) ? std::max(nearest - margin * unit, 0.0) : 0;

@@ -1,5 +1,5 @@
-#include "flatten_parts.h"
 #include "light_tree.h"
+#include "shape_parts.h"
 
 #include <algorithm>
 #include <bit>
@@ -88,8 +88,7 @@ void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent 
     glm::dvec3 sum{0.0};
     glm::dvec3 normal[3];
     for (std::size_t c = 0; c < 3; ++c) {
-        normal[c] = {in_single(triangle.normals[3 * c]), in_single(triangle.normals[3 * c + 1]),
-                     in_single(triangle.normals[3 * c + 2])};
+        normal[c] = in_single(triangle.normals[c]);
         sum += normal[c];
     }
     extent.cosine = -1;
@@ -115,12 +114,25 @@ LightExtent triangle_extent(const LightTriangle &triangle, const TriangleCorners
     return extent;
 }
 
+/// A surface that shines, as the functions for its kind of shape take it.
+struct AreaEmitter {
+    Light base{};        ///< its radiance
+    double radiance = 0; ///< mean luminance
+    int shape = none;    ///< index into Scene::shapes
+};
+
 /// One light for each triangle, so that its number tells the light; those of no area are never
 /// chosen.
-void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, double radiance,
-              LightList &list) {
+void add_triangles(Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                   LightList &list) {
     FlatScene &flat = work.flat;
+    info.kind = CLR_LIGHT_TRIANGLE;
+    if (!(emitter.radiance > 0))
+        return;
     const auto [first, count] = work.triangles_of_shape.at(emitter.shape);
+    info.density = 1;
+    info.light = list.size();
+    info.first_prim = static_cast<uint>(flat.lane_wise_count() + first);
     const bool by_vertex = !flat.triangles.empty();
     for (std::size_t t = first; t < first + count; ++t) {
         const TriangleCorners &corner = flat.corners[t];
@@ -130,81 +142,66 @@ void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, doubl
         store(triangle.v0, glm::dvec3(corner[0]));
         store(triangle.e1, glm::dvec3(e1));
         store(triangle.e2, glm::dvec3(e2));
-        const clr_real default_uvs[6] = {0, 0, 1, 0, 0, 1};
-        std::copy(default_uvs, default_uvs + 6, triangle.uvs);
+        triangle.uvs[1][0] = triangle.uvs[2][1] = 1;
         for (std::size_t c = 0; by_vertex && c < 3; ++c) {
             const std::size_t vertex = flat.triangles[3 * t + c];
             if (!flat.normals.empty() && !std::isnan(flat.normals[3 * vertex])) {
                 triangle.smooth = 1;
-                std::copy_n(&flat.normals[3 * vertex], 3, &triangle.normals[3 * c]);
+                std::copy_n(&flat.normals[3 * vertex], 3, triangle.normals[c]);
             }
             if (!flat.uvs.empty() && !std::isnan(flat.uvs[2 * vertex]))
-                std::copy_n(&flat.uvs[2 * vertex], 2, &triangle.uvs[2 * c]);
+                std::copy_n(&flat.uvs[2 * vertex], 2, triangle.uvs[c]);
         }
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(e1), glm::dvec3(e2)));
-        Light light = base;
+        Light light = emitter.base;
         light.kind = CLR_LIGHT_TRIANGLE;
         light.prim = static_cast<uint>(flat.light_triangles.size());
         light.area = static_cast<clr_real>(area);
         flat.light_triangles.push_back(triangle);
-        list.add(light, triangle_extent(triangle, corner, radiance));
+        list.add(light, triangle_extent(triangle, corner, emitter.radiance));
     }
 }
 
-void add_area(Flattening &work, std::size_t index, LightList &list) {
-    FlatScene &flat = work.flat;
-    const Emitter &emitter = work.scene.emitters[index];
-    const Texture &texture = work.scene.textures[static_cast<std::size_t>(emitter.radiance)];
-    const double radiance = mean_luminance(texture);
-    Light light{};
-    light.texture = flatten_texture(work, emitter.radiance, Rgb{0.0}, light.radiance);
-    EmitterInfo &info = flat.emitters[index];
-    std::copy_n(light.radiance, 3, info.radiance);
-    info.texture = light.texture;
-
-    const auto found = work.primitive_of_shape.find(emitter.shape);
-    if (found == work.primitive_of_shape.end()) {
-        info.kind = CLR_LIGHT_TRIANGLE;
-        if (!(radiance > 0))
-            return;
-        info.density = 1;
-        info.light = list.size() - static_cast<uint>(flat.lane_wise_count()) -
-                     static_cast<uint>(work.triangles_of_shape.at(emitter.shape).first);
-        add_mesh(work, emitter, light, radiance, list);
-        return;
-    }
+/// The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
+void add_sphere(const Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                LightList &list) {
+    const FlatScene &flat = work.flat;
+    const uint bvh_sphere = flat.frame.prim_bvh_sphere;
+    const auto lane_wise = static_cast<uint>(flat.facts.sphere_count);
+    Light light = emitter.base;
+    light.prim = info.first_prim = work.primitive_of_shape.at(emitter.shape);
     info.light = list.size();
-    light.prim = found->second;
-    if (work.scene.shapes[static_cast<std::size_t>(emitter.shape)].kind == ShapeKind::sphere) {
-        // The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
-        const uint bvh_sphere = flat.frame.prim_bvh_sphere;
-        const auto lane_wise = static_cast<uint>(flat.facts.sphere_count);
-        const Sphere &sphere =
-            flat.spheres[light.prim < bvh_sphere ? light.prim
-                                                 : light.prim - bvh_sphere + lane_wise];
-        light.shape = light.prim < bvh_sphere
-                          ? light.prim
-                          : flat.shape_of[light.prim - lane_wise - flat.planars.size()];
-        info.kind = light.kind = CLR_LIGHT_SPHERE;
-        std::copy_n(sphere.center, 3, light.position);
-        std::copy_n(sphere.center, 3, info.center);
-        light.area = info.radius = sphere.radius;
-        // A sphere that shines inwards is met by chance only: nothing outside sees it.
-        if (!(sphere.radius > 0) || !(radiance > 0))
-            return;
-        info.density = 1;
-        const glm::dvec3 center = in_single(sphere.center);
-        const double radius = in_single(sphere.radius);
-        list.add(
-            light,
-            {center - radius, center + radius, {0, 0, 1}, -1, pi * radius * radius * radiance});
+    const Sphere &sphere =
+        flat.spheres[light.prim < bvh_sphere ? light.prim : light.prim - bvh_sphere + lane_wise];
+    light.shape = light.prim < bvh_sphere
+                      ? light.prim
+                      : flat.shape_of[light.prim - lane_wise - flat.planars.size()];
+    info.kind = light.kind = CLR_LIGHT_SPHERE;
+    std::copy_n(sphere.center, 3, light.position);
+    std::copy_n(sphere.center, 3, info.center);
+    light.radius = info.radius = sphere.radius;
+    // A sphere that shines inwards is met by chance only: nothing outside sees it.
+    if (!(sphere.radius > 0) || !(emitter.radiance > 0))
         return;
-    }
-    light.prim -= static_cast<uint>(flat.facts.sphere_count);
+    info.density = 1;
+    const glm::dvec3 center = in_single(sphere.center);
+    const double radius = in_single(sphere.radius);
+    list.add(
+        light,
+        {center - radius, center + radius, {0, 0, 1}, -1, pi * radius * radius * emitter.radiance});
+}
+
+void add_planar(const Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                LightList &list) {
+    const FlatScene &flat = work.flat;
+    Light light = emitter.base;
+    info.first_prim = work.primitive_of_shape.at(emitter.shape);
+    info.light = list.size();
+    light.prim = info.first_prim - static_cast<uint>(flat.facts.sphere_count);
     info.kind = light.kind = CLR_LIGHT_PLANAR;
     const Planar &planar = flat.planars[light.prim];
     light.area = planar.area;
-    if (!(radiance > 0) || !(planar.area > 0))
+    if (!(emitter.radiance > 0) || !(planar.area > 0))
         return;
     info.density = 1 / planar.area;
     LightExtent extent;
@@ -215,8 +212,32 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         extent.axis[c] = in_single(planar.normal[c]);
     }
     extent.cosine = 1;
-    extent.intensity = in_single(light.area) * radiance;
+    extent.intensity = in_single(light.area) * emitter.radiance;
     list.add(light, extent);
+}
+
+void add_area(Flattening &work, std::size_t index, LightList &list) {
+    const Emitter &source = work.scene.emitters[index];
+    EmitterInfo &info = work.flat.emitters[index];
+    AreaEmitter emitter;
+    emitter.shape = source.shape;
+    emitter.radiance =
+        mean_luminance(work.scene.textures[static_cast<std::size_t>(source.radiance)]);
+    info.texture = emitter.base.texture =
+        flatten_texture(work, source.radiance, Rgb{0.0}, info.radiance);
+    std::copy_n(info.radiance, 3, emitter.base.radiance);
+    switch (test_of(work.scene.shapes[static_cast<std::size_t>(source.shape)], work)) {
+    case ShapeTest::sphere:
+    case ShapeTest::bvh_sphere:
+        add_sphere(work, emitter, info, list);
+        break;
+    case ShapeTest::planar:
+        add_planar(work, emitter, info, list);
+        break;
+    case ShapeTest::triangles:
+        add_triangles(work, emitter, info, list);
+        break;
+    }
 }
 
 /// The share of the samples that a map gets beside other lights: by the irradiance of either at the

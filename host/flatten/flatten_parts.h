@@ -25,6 +25,8 @@ struct Flattening {
     std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none
     std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
+    bool spheres_in_bvh = false;    ///< there are too many to test them one by one
+    bool rectangles_in_bvh = false; ///< likewise, with the disks; as triangles
 
     /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
     [[nodiscard]] bool wants(const char *name) const {

@@ -39,30 +39,15 @@ bool is_opaque(const Scene &scene, const Shape &shape) {
 
 /// Spheres from this radius on, in the renderer's units, are as large as the scene.
 constexpr double large_radius = 0.5;
-/// From this radius on, a rounding of the radius is larger than what is seen of the scene.
-constexpr double huge_radius = 64;
-
-/// True if the sphere is large and its surface no farther from the origin than its radius.
-bool is_beside(const Shape &shape, const Placement &placement, double least_radius) {
-    const double radius = sphere_radius(shape) * placement.scale;
-    return radius >= least_radius &&
-           glm::length(placement.exact(glm::dvec3(shape.to_world[3]))) < 2 * radius;
-}
-
-/// The spheres' shapes in the order of their primitives: opaque ones first, of these those that are
-/// large before the others; huge ones last. With `huge_only` no others.
-std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only, SceneFacts &facts) {
+/// The lane-wise spheres' shapes in the order of their primitives: opaque ones first, of these
+/// those that are large before the others; huge ones last.
+std::vector<std::size_t> order_spheres(const Flattening &work, SceneFacts &facts) {
     const Scene &scene = work.scene;
     const Placement &placement = work.flat.placement;
     std::vector<std::size_t> order, huge;
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-        if (scene.shapes[i].kind != ShapeKind::sphere)
-            continue;
-        if (is_beside(scene.shapes[i], placement, huge_radius))
-            huge.push_back(i);
-        else if (!huge_only)
-            order.push_back(i);
-    }
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        if (test_of(scene.shapes[i], work) == ShapeTest::sphere)
+            (is_huge(scene.shapes[i], placement) ? huge : order).push_back(i);
     const auto others = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
         return is_opaque(scene, scene.shapes[i]);
     });
@@ -76,10 +61,9 @@ std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only, S
     return order;
 }
 
-/// The spheres that every ray tests: all of them, or the huge ones.
-void flatten_lane_wise_spheres(Flattening &work, bool huge_only) {
+void flatten_lane_wise_spheres(Flattening &work) {
     FlatScene &flat = work.flat;
-    for (const std::size_t i : order_spheres(work, huge_only, flat.facts)) {
+    for (const std::size_t i : order_spheres(work, flat.facts)) {
         const Shape &shape = work.scene.shapes[i];
         append_lane_wise_shape(i, work);
         flat.spheres.push_back(flatten_sphere(shape, flat.placement));
@@ -96,7 +80,7 @@ void flatten_bvh_spheres(Flattening &work) {
     FlatScene &flat = work.flat;
     for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
         const Shape &shape = work.scene.shapes[i];
-        if (shape.kind != ShapeKind::sphere || work.primitive_of_shape.count(static_cast<int>(i)))
+        if (test_of(shape, work) != ShapeTest::bvh_sphere)
             continue;
         const auto id = static_cast<uint>(flat.shape_of.size());
         flat.shape_of.push_back(append_shape(shape, work));
@@ -168,7 +152,7 @@ void make_records(Flattening &work) {
             r.size = p.distance;
             r.is_disk = p.is_disk != 0 ? CLR_NONE : 0;
             if (p.area > 0)
-                store_frame(r.frame, shape_of_primitive(work, i), flat.placement);
+                store_coordinates(r, shape_of_primitive(work, i), flat.placement);
         }
         r.materials = flat.shapes[i].materials;
         r.emitter = flat.shapes[i].emitter;
@@ -202,18 +186,17 @@ void flatten_shapes(Flattening &work) {
         return std::count_if(work.scene.shapes.begin(), work.scene.shapes.end(),
                              [=](const Shape &s) { return ((s.kind == kinds) || ...); });
     };
-    const bool spheres_in_bvh = count(ShapeKind::sphere) > few_primitives;
-    const bool rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) > few_primitives;
+    work.spheres_in_bvh = count(ShapeKind::sphere) > few_primitives;
+    work.rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) > few_primitives;
 
     // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles, and
     // spheres that are too many to test one by one.
-    flatten_lane_wise_spheres(work, spheres_in_bvh);
-    flatten_planars(work, rectangles_in_bvh);
-    flatten_meshes(work, rectangles_in_bvh);
+    flatten_lane_wise_spheres(work);
+    flatten_planars(work);
+    flatten_meshes(work);
     flat.frame.prim_bvh_sphere =
         static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
-    if (spheres_in_bvh)
-        flatten_bvh_spheres(work);
+    flatten_bvh_spheres(work);
 
     make_records(work);
 }

@@ -16,6 +16,10 @@ struct LetsThrough {
     bool operator()(const DielectricBsdf &) const { return true; }
     bool operator()(const RoughDielectricBsdf &) const { return true; }
     bool operator()(const ThinDielectricBsdf &) const { return true; }
+    bool operator()(const PlasticBsdf &) const { return false; }
+    bool operator()(const RoughPlasticBsdf &) const { return false; }
+    bool operator()(const PrincipledBsdf &b) const { return b.spec_trans != none; }
+    bool operator()(const PrincipledThinBsdf &) const { return true; }
     bool operator()(const NullBsdf &) const { return true; }
     bool operator()(const MaskBsdf &) const { return true; }
     bool operator()(const BlendBsdf &b) const { return nested(b.first) || nested(b.second); }

@@ -60,6 +60,36 @@ struct RoughDielectricBsdf {
     int specular_reflectance = none, specular_transmittance = none;
 };
 
+/// A diffuse base under a smooth boundary. By default polypropylene in air.
+struct PlasticBsdf {
+    IndicesOfRefraction ior{1.49, 1.000277};
+    int diffuse_reflectance = none, specular_reflectance = none;
+    bool nonlinear = false; ///< the hue of the base changes with each reflection inside
+};
+
+/// The same under a rough boundary.
+struct RoughPlasticBsdf {
+    PlasticBsdf plastic;
+    MicrofacetKind microfacets = MicrofacetKind::beckmann;
+    double alpha = 0.1;
+};
+
+/// Burley's principled BSDF. All indices but that of the base colour are of numbers.
+struct PrincipledBsdf {
+    int base_color = none, roughness = none, anisotropic = none, metallic = none;
+    int spec_trans = none; ///< none: nothing passes
+    int spec_tint = none, sheen = none, sheen_tint = none, flatness = none;
+    int clearcoat = none, clearcoat_gloss = none;
+    double eta = 1.5; ///< interior over exterior
+};
+
+/// Burley's thin principled BSDF.
+struct PrincipledThinBsdf {
+    int base_color = none, roughness = none, anisotropic = none, spec_trans = none, eta = none;
+    int spec_tint = none, sheen = none, sheen_tint = none, flatness = none;
+    int diff_trans = none; ///< 0 to 2
+};
+
 /// All light passes.
 struct NullBsdf {};
 
@@ -77,9 +107,9 @@ struct BlendBsdf {
 
 /// What normal and bump maps do at the horizon.
 struct PerturbedNormals {
-    bool flip_invalid = true;  ///< turns normals over that wi sees from behind
-    bool shadow = true;        ///< Conty Estevez et al., "A Microfacet-Based Shadowing Function to
-                               ///< Solve the Bump Terminator Problem", Ray Tracing Gems 2019
+    bool flip_invalid = true; ///< turns normals over that wi sees from behind
+    bool shadow = true;       ///< Conty Estevez et al., "A Microfacet-Based Shadowing Function to
+                              ///< Solve the Bump Terminator Problem", Ray Tracing Gems 2019
 };
 
 struct NormalMapBsdf {

@@ -24,8 +24,7 @@ double read_ior(Properties &properties, const std::string &name, double fallback
 
 } // namespace
 
-IndicesOfRefraction read_iors(Properties &properties) {
-    IndicesOfRefraction ior;
+IndicesOfRefraction read_iors(Properties &properties, IndicesOfRefraction ior) {
     ior.interior = read_ior(properties, "int_ior", ior.interior);
     ior.exterior = read_ior(properties, "ext_ior", ior.exterior);
     return ior;

@@ -15,9 +15,7 @@ const std::map<std::string, std::string> nearest_bsdfs{
     {"hair", "roughconductor"},     {"measured", "roughconductor"},
     {"pplastic", "roughplastic"},   {"polarizer", "null"},
     {"circular", "null"},           {"retarder", "null"},
-    {"measured_polarized", "roughconductor"},
-    {"plastic", "blendbsdf"},       {"roughplastic", "blendbsdf"},
-    {"principled", "roughconductor"}, {"principledthin", "thindielectric"}};
+    {"measured_polarized", "roughconductor"}};
 
 std::vector<std::string> bsdf_types() {
     return {

@@ -63,6 +63,11 @@ private:
 #include "bsdf_plugins.def"
 #undef CLR_PLUGIN
     MicrofacetModel read_microfacets(Properties &properties);
+    /// The texture of the numbers `name`, which are held to `most`.
+    int read_share(Properties &properties, const std::string &name, double fallback,
+                   double most = 1);
+    /// A principled BSDF's spec_trans; none where it is 0 all over.
+    int read_transmission(Properties &properties);
 
     // mitsuba_shapes.cpp
     void read_shape(int object);
@@ -97,8 +102,8 @@ private:
 
 /// The metal that a conductor names; it then states neither eta nor k.
 std::optional<ComplexIor> read_metal(Properties &properties);
-/// int_ior and ext_ior, numbers or names of media.
-IndicesOfRefraction read_iors(Properties &properties);
+/// int_ior and ext_ior, numbers or names of media; those of `ior` where they are not stated.
+IndicesOfRefraction read_iors(Properties &properties, IndicesOfRefraction ior = {});
 PerturbedNormals read_perturbed_normals(Properties &properties);
 
 /// One of the reconstruction filters.

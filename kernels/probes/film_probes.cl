@@ -1,4 +1,5 @@
-/* Runs the film's sums alone, for tests, with pixels of one sample's width: FILTER 0, TILE 1. */
+/* Runs the film's sums alone, for tests, with pixels of one sample's width: FILTER CLR_FILTER_BOX,
+ * TILE 1. */
 
 #include "film.clh"
 

@@ -176,7 +176,7 @@ __kernel void probe_sphere_uv(PROBE_SCENE_PARAMETERS) {
     probe_out(v, out, first, count, 2u, 1u);
 }
 
-#if FILTER == 3
+#if FILTER == CLR_FILTER_SPLATTED
 /* in: the place within a pixel along an axis. out: the weights of the pixels around it. */
 __kernel void probe_filter(PROBE_SCENE_PARAMETERS) {
     PROBE_SCENE;
@@ -188,7 +188,7 @@ __kernel void probe_filter(PROBE_SCENE_PARAMETERS) {
             out[weights * (first + i) + k] = weight[k];
     }
 }
-#elif FILTER == 1
+#elif FILTER == CLR_FILTER_SAMPLED
 /* in: a number, and how many pixels the picture has on either side. out: the offset from the
    pixel's centre and the weight. */
 __kernel void probe_filter_offset(PROBE_SCENE_PARAMETERS) {

@@ -63,7 +63,7 @@ CLR_STATIC_SIZE(ShapeInfo, 8);
    one a and h, see sphere.clh) or a planar's normal and its distance from the origin, the shape's
    info, the first half of the material of its sides, where they do not differ
    (MATERIALS_IN_RECORDS), and a planar's dual vectors: its coordinates of the point p are
-   ra . p + frame[3] and rb . p + frame[7]. */
+   to_a . p + to_a[3] and to_b . p + to_b[3]. */
 typedef struct {
     clr_real place[3]; /* centre or normal */
     clr_real size;     /* radius or distance */
@@ -72,7 +72,8 @@ typedef struct {
     clr_word is_disk;
     clr_real inv_size; /* of a sphere */
     clr_real material[8];
-    clr_real frame[8]; /* of a planar */
+    clr_real to_a[4]; /* of a planar */
+    clr_real to_b[4];
 } PrimitiveRecord;
 CLR_STATIC_WORDS(PrimitiveRecord, 24);
 
@@ -90,6 +91,7 @@ enum {
 #define CLR_BSDF_TANGENTS 0x400u      /* the frame has to follow dp/du */
 #define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
 #define CLR_BSDF_SHADOWS_NORMALS 0x1000u
+#define CLR_BSDF_NONLINEAR 0x4000u /* plastic whose hue changes with each reflection inside */
 #define CLR_BSDF_MIRRORED 0x2000u /* shown by `twosided` on the back of the surface */
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
@@ -108,6 +110,12 @@ typedef struct {
 } Material;
 CLR_STATIC_WORDS(Material, 16);
 
+/* From the world's axes to the own ones of a sphere, for its (u, v). */
+typedef struct {
+    clr_real axis[3][3];
+} ShapeFrame;
+CLR_STATIC_WORDS(ShapeFrame, 9);
+
 #define CLR_LIGHT_POINT 0u
 #define CLR_LIGHT_SPHERE 1u
 #define CLR_LIGHT_PLANAR 2u
@@ -116,7 +124,7 @@ CLR_STATIC_WORDS(Material, 16);
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
    light triangles; bit k of `trail` is the child taken at level k of the light tree. `position` is
    that of a point, the centre of a sphere, or the middle of the only light. Point: radiance holds
-   the intensity, times the square of the unit of length. Sphere: `area` holds the radius. */
+   the intensity, times the square of the unit of length. */
 typedef struct {
     clr_real position[3];
     clr_word kind;
@@ -124,24 +132,27 @@ typedef struct {
     clr_word texture;
     clr_word prim;
     clr_word trail;
-    clr_real area;
-    clr_word shape; /* of a sphere */
+    clr_real area;   /* of a planar or a triangle */
+    clr_real radius; /* of a sphere */
+    clr_word shape;  /* of a sphere */
 } Light;
-CLR_STATIC_WORDS(Light, 12);
+CLR_STATIC_WORDS(Light, 13);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
    triangle that is the only light, 1 for spheres and for the other triangles (kind says which), 0
-   where it is never sampled. The light is `light`, for a triangle the primitive's number added. */
+   where it is never sampled. Primitive `first_prim` is light `light`, and the further triangles of
+   a mesh are the lights that follow. */
 typedef struct {
     clr_real radiance[3];
     clr_word texture;
     clr_real density;
     clr_word kind;
-    clr_real radius;
     clr_word light;
+    clr_word first_prim;
     clr_real center[3];
-    clr_word pad[5];
+    clr_real radius;
+    clr_word pad[4];
 } EmitterInfo;
 CLR_STATIC_WORDS(EmitterInfo, 16);
 
@@ -154,8 +165,8 @@ typedef struct {
     clr_real pad0;
     clr_real e2[3];
     clr_real pad1;
-    clr_real normals[9];
-    clr_real uvs[6];
+    clr_real normals[3][3];
+    clr_real uvs[3][2];
     clr_real pad2;
 } LightTriangle;
 CLR_STATIC_WORDS(LightTriangle, 28);
