@@ -12,21 +12,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Linear radiance of pixel `at`, grey images giving the same for all channels.
+/// Linear radiance of pixel `at`.
 Rgb radiance_of(const Emitter &emitter, std::size_t at) {
-    const Image &image = *emitter.bitmap;
-    const auto channels = static_cast<std::size_t>(image.channels);
-    Rgb c;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i = at * channels + (channels >= 3 ? k : 0);
-        double value = 0;
-        if (image.type == PixelType::f32)
-            value = image.f32[i];
-        else
-            value = emitter.raw ? image.u8[i] / 255.0 : srgb_decode(image.u8[i] / 255.0);
-        c[static_cast<int>(k)] = value * emitter.scale;
-    }
-    return c;
+    return texel_color(*emitter.bitmap, at, {emitter.raw}) * emitter.scale;
 }
 
 /// Solid angle of the cells between rows j and j + 1 of `rows` + 1, each of `width` in the row.

@@ -34,20 +34,11 @@ double mean_luminance(const Texture &texture) {
     if (texture.kind == TextureKind::checkerboard)
         return (luminance(texture.color0) + luminance(texture.color1)) / 2;
     const Image &image = *texture.bitmap;
-    const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        Rgb c;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t at = i * channels + (channels >= 3 ? k : 0);
-            c[static_cast<int>(k)] = image.type == PixelType::f32 ? image.f32[at]
-                                     : texture.raw                ? image.u8[at] / 255.0
-                                                   : srgb_decode(image.u8[at] / 255.0);
-        }
-        sum += luminance(c);
-    }
+    for (std::size_t i = 0; i < count; ++i)
+        sum += luminance(texel_color(image, i, texture.format));
     return sum / static_cast<double>(count);
 }
 

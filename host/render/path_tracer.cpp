@@ -87,7 +87,7 @@ int tile_for(const DeviceEntry &entry) {
 
 PictureTiles tiles_of(const FrameData &frame, const KernelConfig &config) {
     return {frame.width, frame.height, static_cast<std::size_t>(config.TILE),
-            static_cast<std::size_t>(config.BORDER)};
+            static_cast<std::size_t>(config.BORDER), config.VARIANCE != 0};
 }
 
 std::vector<Band> bands_of(const DeviceEntry &entry, const PictureTiles &tiles,

@@ -157,7 +157,8 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     stats_.seconds_upload = watch_.lap("upload");
     picture_ = std::make_unique<Picture>(
         tiles_of(flat_.frame, config_), format,
-        Picture::Layers{options_.with_variance, options_.with_samples}, flat_.frame.film_exponent);
+        Picture::Layers{options_.with_variance, options_.with_samples}, flat_.frame.film_exponent,
+        tracer_->control_layout());
 }
 
 /// What the render decides of the frame.
@@ -210,8 +211,10 @@ RenderResult Rendering::result_of(Picture &&picture) {
     result.samples = std::move(picture.samples);
     result.variance = std::move(picture.variance);
     if (options_.with_variance) {
-        result.error.factor = variance_factor(tracer_->control_layout(), tracer_->read_control(),
-                                              result.image, flat_.frame.film_exponent);
+        const std::vector<ControlPixel> pixels = tracer_->read_control();
+        result.error.factor = variance_factor(
+            {tracer_->control_layout(), pixels, picture.control_means, flat_.frame.film_exponent},
+            result.image, result.variance);
         for (float &value : result.variance.f32)
             value *= static_cast<float>(result.error.factor.value);
         result.error.relative_variance = mean_relative_variance(result.image, result.variance);

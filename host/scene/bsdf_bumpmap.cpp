@@ -11,7 +11,7 @@ void SceneReader::read_model(Properties &properties, BumpMapBsdf &bsdf) {
     bsdf.height = read_texture(textures.front()->object, SpectrumUse::number);
     bsdf.scale = properties.number("scale", 1);
     bsdf.normals = read_perturbed_normals(properties);
-    bsdf.nested = read_nested(properties, 1).front();
+    bsdf.nested = read_turned(properties);
 }
 
 } // namespace clrender::mitsuba

@@ -18,8 +18,8 @@ void SceneReader::read_model(Properties &properties, TwosidedBsdf &bsdf) {
 
     // Both sides of the outer BSDF show the front of a nested one.
     for (int *side : {&bsdf.front, &bsdf.back})
-        if (const auto *inner = std::get_if<TwosidedBsdf>(
-                &scene_.bsdfs.at(static_cast<std::size_t>(*side)).model))
+        if (const auto *inner =
+                std::get_if<TwosidedBsdf>(&scene_.bsdfs.at(static_cast<std::size_t>(*side)).model))
             *side = inner->front;
 }
 

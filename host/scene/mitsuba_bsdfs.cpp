@@ -8,14 +8,19 @@ namespace clrender::mitsuba {
 namespace {
 
 /// BSDFs of Mitsuba that are not built, and the nearest that is.
-const std::map<std::string, std::string> nearest_bsdfs{
-    {"phong", "roughplastic"},      {"ward", "roughconductor"},
-    {"coating", "plastic"},         {"roughcoating", "roughplastic"},
-    {"roughdiffuse", "diffuse"},    {"difftrans", "diffuse"},
-    {"hair", "roughconductor"},     {"measured", "roughconductor"},
-    {"pplastic", "roughplastic"},   {"polarizer", "null"},
-    {"circular", "null"},           {"retarder", "null"},
-    {"measured_polarized", "roughconductor"}};
+const std::map<std::string, std::string> nearest_bsdfs{{"phong", "roughplastic"},
+                                                       {"ward", "roughconductor"},
+                                                       {"coating", "plastic"},
+                                                       {"roughcoating", "roughplastic"},
+                                                       {"roughdiffuse", "diffuse"},
+                                                       {"difftrans", "diffuse"},
+                                                       {"hair", "roughconductor"},
+                                                       {"measured", "roughconductor"},
+                                                       {"pplastic", "roughplastic"},
+                                                       {"polarizer", "null"},
+                                                       {"circular", "null"},
+                                                       {"retarder", "null"},
+                                                       {"measured_polarized", "roughconductor"}};
 
 std::vector<std::string> bsdf_types() {
     return {
@@ -66,10 +71,9 @@ int SceneReader::read_bsdf(int object) {
 std::vector<int> SceneReader::read_nested(Properties &properties, std::size_t count) {
     const auto children = properties.children("bsdf");
     if (children.size() != count)
-        throw InputError(properties.where(), properties.description() + " has " +
-                                                 std::to_string(children.size()) +
-                                                 " nested BSDFs, expected " +
-                                                 (count == 1 ? "one" : "two"));
+        throw InputError(properties.where(),
+                         properties.description() + " has " + std::to_string(children.size()) +
+                             " nested BSDFs, expected " + (count == 1 ? "one" : "two"));
     std::vector<int> nested;
     for (const Child *child : children)
         nested.push_back(read_bsdf(child->object));

@@ -45,6 +45,7 @@ private:
     int read_bitmap(Properties &properties, SpectrumUse use);
     int read_checkerboard(Properties &properties);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
+    int read_raw_constant(Properties &properties, SpectrumUse use);
     /// The colour or texture `name` of an object, or none.
     int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
     /// The texture of the numbers `name`.
@@ -62,6 +63,8 @@ private:
 #define CLR_PLUGIN(type, Model) void read_model(Properties &properties, Model &bsdf);
 #include "bsdf_plugins.def"
 #undef CLR_PLUGIN
+    /// The BSDF that a normal or bump map nests; it may not turn normals itself.
+    int read_turned(Properties &properties);
     MicrofacetModel read_microfacets(Properties &properties);
     /// The texture of the numbers `name`, which are held to `most`.
     int read_share(Properties &properties, const std::string &name, double fallback,

@@ -92,7 +92,7 @@ enum {
 #define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
 #define CLR_BSDF_SHADOWS_NORMALS 0x1000u
 #define CLR_BSDF_NONLINEAR 0x4000u /* plastic whose hue changes with each reflection inside */
-#define CLR_BSDF_MIRRORED 0x2000u /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_MIRRORED 0x2000u  /* shown by `twosided` on the back of the surface */
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
@@ -201,7 +201,10 @@ CLR_STATIC_WORDS(LightNode, 24);
 #define CLR_WRAP_CLAMP 2u
 
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
-   bytes in the u8 array (through decode table `decode`: 0 linear, 1 sRGB), or triples of floats. */
+   bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. */
+#define CLR_DECODE_LINEAR 0u
+#define CLR_DECODE_SRGB 1u
+#define CLR_DECODE_HALF 2u /* added: the same, rounded to half precision */
 typedef struct {
     clr_real to_uv[6];
     uint kind;

@@ -56,8 +56,8 @@ TEST_CASE("BSDFs that are not built are named with the nearest that is", "[messa
     for (const char *type : {"phong", "ward", "coating", "roughdiffuse", "hair", "measured",
                              "pplastic", "polarizer", "circular", "retarder"}) {
         CAPTURE(type);
-        CHECK(has(error_of_bsdf(type), "bsdf \"" + std::string(type) +
-                                           "\" is not supported, the nearest that is: "));
+        CHECK(has(error_of_bsdf(type),
+                  "bsdf \"" + std::string(type) + "\" is not supported, the nearest that is: "));
     }
 }
 

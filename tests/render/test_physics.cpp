@@ -239,6 +239,55 @@ TEST_CASE("glass and mirrors are lossless under a constant sky") {
     check_constant(picture.mean, 1, 1e-5);
 }
 
+TEST_CASE("what lets light pass, and blends and masks of it, are lossless under a constant sky") {
+    const auto ball = [](double x, double y, const std::string &bsdf) {
+        return fmt::format(R"(<shape type="sphere"><point name="center" x="{}" y="{}" z="0"/>
+            <float name="radius" value=".8"/>{}</shape>)",
+                           x, y, bsdf);
+    };
+    const std::string mirror = R"(<bsdf type="conductor"/>)",
+                      glass = R"(<bsdf type="dielectric"/>)";
+    const auto picture = render_measured(
+        scene_from_xml(
+            integrator(-1) + camera("0 0 6", "0 0 0", "0 1 0") +
+            R"(<emitter type="constant"><rgb name="radiance" value="1"/></emitter>)" +
+            ball(-1, 1, R"(<bsdf type="null"/>)") +
+            ball(1, 1,
+                 R"(<bsdf type="thindielectric"><float name="int_ior" value="1.9"/></bsdf>)") +
+            ball(-1, -1,
+                 R"(<bsdf type="mask"><float name="opacity" value=".3"/>
+                    <bsdf type="twosided">)" +
+                     mirror + "</bsdf></bsdf>") +
+            ball(1, -1,
+                 R"(<bsdf type="blendbsdf"><texture name="weight" type="checkerboard">
+                    <rgb name="color0" value=".2"/><rgb name="color1" value=".7"/></texture>)" +
+                     glass + R"(<bsdf type="twosided">)" + mirror + "</bsdf></bsdf>")),
+        {.spp = 64});
+    check_constant(picture.mean, 1, 1e-5);
+}
+
+// Without a sky alpha is the share of paths that meet something: the opacity a of a mask, and
+// behind a mask of another one 1 - (1 - a)^2.
+TEST_CASE("alpha is what masks stop") {
+    std::string view = camera_above;
+    view.replace(view.find("<rfilter"), 0, R"(<string name="pixel_format" value="rgba"/>)");
+    const std::string mask = R"(<transform name="to_world"><rotate x="1" angle="-90"/>
+        <scale value="20"/><translate y="{}"/></transform><bsdf type="mask">
+        <float name="opacity" value=".25"/><bsdf type="diffuse"/></bsdf>)";
+    const auto alpha = [&](int count) {
+        std::string shapes;
+        for (int i = 0; i < count; ++i)
+            shapes +=
+                "<shape type=\"rectangle\">" + fmt::format(fmt::runtime(mask), -i) + "</shape>";
+        const auto picture =
+            render_measured(scene_from_xml(integrator(-1) + view + shapes), {.spp = 256});
+        return channel_mean(picture.mean, 3);
+    };
+    // Four standard errors of 2^16 independent paths.
+    CHECK(alpha(1) == Approx(0.25).margin(4 * std::sqrt(0.25 * 0.75) / 256));
+    CHECK(alpha(2) == Approx(0.4375).margin(4 * std::sqrt(0.4375 * 0.5625) / 256));
+}
+
 // The light's picture fills the film, one texel a pixel; row 0 of the file is at v = 0, y = -1.
 TEST_CASE("pixel_centers looks exactly at the centres of the pixels") {
     std::string view = camera("0 0 5", "0 0 0", "0 1 0", 2 * std::atan(0.2) * 180 / pi);
