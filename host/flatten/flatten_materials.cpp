@@ -77,6 +77,7 @@ void set_features(FlatScene &flat) {
     config.HAS_##KIND = has_kind(CLR_BSDF_##KIND) ? 1 : 0;
 #define CLR_BSDF_NODE(KIND, meaning) config.HAS_##KIND = has_kind(CLR_BSDF_##KIND) ? 1 : 0;
 #include "shared/bsdf_list.def"
+    config.HAS_SMOOTH_TRANSMISSION = has_flag(CLR_BSDF_TRANSMITS) ? 1 : 0;
     config.HAS_TANGENTS = has_flag(CLR_BSDF_TANGENTS) ? 1 : 0;
     config.HAS_UVS |= config.HAS_TANGENTS;
     config.HAS_BECKMANN = has_flag(CLR_BSDF_BECKMANN) ? 1 : 0;

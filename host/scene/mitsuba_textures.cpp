@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fmt/core.h>
+#include <utility>
 
 namespace clrender::mitsuba {
 
@@ -64,9 +65,10 @@ double mean_of(const Rgb &rgb) {
 }
 
 /// What Mitsuba makes of colours where it asks for a number: constant ones give their mean, bitmaps
-/// their luminance.
+/// their luminance, checkerboards (up to 3.9.1 at least) the number of the other squares.
 void make_number(Texture &texture) {
     texture.is_number = true;
+    std::swap(texture.color0, texture.color1);
     for (Rgb *constant : {&texture.value, &texture.color0, &texture.color1})
         *constant = Rgb(mean_of(*constant));
 }
