@@ -21,7 +21,7 @@ from tables import markdown, publish
 
 # Names of kernels/shared/kernel_config.def by what they are about.
 GROUPS = {
-    "spheres": "SPHERE_COUNT,SOLID_COUNT,WIDE_COUNT,SHADOW_FREE_COUNT",
+    "spheres": "SPHERE_COUNT,OPAQUE_COUNT,LARGE_COUNT,SHADOW_FREE_COUNT",
     "flat shapes": "PLANAR_COUNT,HAS_DISKS,SHADOWLESS_PLANAR_COUNT,PLANAR_AXES",
     "hierarchy": "HAS_TRIANGLES,HAS_BVH_SPHERES,HAS_VERTEX_NORMALS",
     "record layout": "RECORD_TABLE,MATERIALS_IN_RECORDS",

@@ -8,9 +8,7 @@
 
 /* Puts the children in `bits` on the stack, the nearest on top. */
 static inline uint stack_push(uint *children, float *entries, uint top,
-                              __global const BvhNode *node, uint bits, float8 entry) {
-    float entry_of[BVH_WIDTH];
-    vstore8(entry, 0, entry_of);
+                              __global const BvhNode *node, uint bits, const float *entry_of) {
     const uint base = top;
     for (; bits != 0u; bits &= bits - 1u) {
         const uint slot = bvh_lowest_bit(bits);
@@ -43,9 +41,9 @@ static inline int stack_closest(__global const BvhNode *nodes,
         }
         if (bvh_child_kind(child) == BVH_CHILD_INNER) {
             __global const BvhNode *node = nodes + bvh_child_index(child);
-            float8 entry;
-            const uint bits = bvh_mask_bits(bvh_meet_boxes(node, ray, hit.t, &entry));
-            top = stack_push(children, entries, top, node, bits, entry);
+            float entry_of[BVH_WIDTH];
+            const uint bits = bvh_meet_boxes(node, ray, hit.t, entry_of);
+            top = stack_push(children, entries, top, node, bits, entry_of);
         } else {
             bvh_visit_block(triangles, spheres, child, ray, &hit);
         }
@@ -68,8 +66,8 @@ static inline int stack_any(__global const BvhNode *nodes, __global const Triang
         const uint child = children[--top];
         if (bvh_child_kind(child) == BVH_CHILD_INNER) {
             __global const BvhNode *node = nodes + bvh_child_index(child);
-            float8 entry;
-            uint bits = bvh_mask_bits(bvh_meet_boxes(node, ray, t_end, &entry));
+            float entry_of[BVH_WIDTH];
+            uint bits = bvh_meet_boxes(node, ray, t_end, entry_of);
             for (; bits != 0u; bits &= bits - 1u) {
                 children[top++] = node->child[bvh_lowest_bit(bits)];
             }

@@ -73,14 +73,9 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.lanes = options.lanes;
     r.double_precision = options.double_precision;
     r.device = options.device;
-    r.brute_force = options.accel == cli::Accel::none;
-    r.pixel_centers = options.pixel_centers;
-    r.independent_sampler = options.independent;
-    r.strategy = options.strategy;
-    r.light_samples = options.light_samples;
+    r.sampling = options.sampling;
     r.batch = options.batch;
     r.tile = options.tile;
-    r.generality = options.generality;
     r.kernel_dir = options.kernel_dir;
     r.with_variance = options.layers.count("variance") != 0;
     r.with_samples = options.layers.count("samples") != 0;

@@ -48,7 +48,7 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.ahead = p.start_t_max = p.t_max;
     p.start = p.o;
 #endif
-#if INTEGRATOR == 1
+#if INTEGRATOR == CLR_INTEGRATOR_DEPTH
     p.skipped = p.t_max;
 #endif
     int idle_steps = 0, busy_steps = 0;
@@ -108,15 +108,15 @@ __kernel void path_trace(SCENE_PARAMETERS, __global FilmPixel *film,
             work.seed = rendering == 0u ? frame->seed : frame->seed ^ CONTROL_SEED;
             work.next_sample = work.first_sample;
             work.next_x = work.next_y = 0;
-            block_clear(&block, rendering > 0u);
+            block_clear(&block);
             render_block(&scene, work, &block, &rays, rendering == 0u ? &counters : &uncounted);
             if (rendering == 0u)
                 film_add(&scene, film, work.x, work.y - (int)film_row, (int)(film_end - film_row),
                          samples, &block);
 #if VARIANCE
             if (renderings > 1u)
-                control_add(&scene, control + (size_t)group * TILE_PIXELS, &block,
-                            rendering == 0u ? 1.0f : -1.0f);
+                control_add(&scene, control + (size_t)group * TILE_PIXELS, &block, rendering,
+                            samples);
 #endif
         }
     }

@@ -1,6 +1,5 @@
 #include "cli/options.h"
 
-#include "flatten/generality.h"
 #include "image/image.h"
 #include "log.h"
 #include "output_file.h"
@@ -209,7 +208,7 @@ std::string check_output(const std::string &path) {
 }
 
 std::string check_feature(const std::string &name) {
-    const Generality &known = full_generality();
+    const ForcedFeatures &known = all_features();
     if (name == "all" || known.count(name) != 0)
         return {};
     const std::vector<std::string> names(known.begin(), known.end());
@@ -285,7 +284,7 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("N")
         ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()))
         ->group(group);
-    app.add_flag("--pixel-centers", options.pixel_centers,
+    app.add_flag("--pixel-centers", options.sampling.pixel_centers,
                  "All samples at the centres of the pixels, no filter")
         ->group(group);
     app.add_option("--sampler", raw.sampler,
@@ -441,16 +440,28 @@ CLI::App *add_test(CLI::App &app, Options &options, RawOptions &raw) {
     return command;
 }
 
+void finish_sampling(SamplingOptions &sampling, const RawOptions &raw) {
+    sampling.light_samples =
+        raw.light_samples == "auto" ? 0 : *parse_number<int>(raw.light_samples);
+    sampling.strategy = raw.strategy == "light"  ? Strategy::light
+                        : raw.strategy == "bsdf" ? Strategy::bsdf
+                                                 : Strategy::mis;
+    sampling.independent_sampler = raw.sampler == "independent";
+    sampling.brute_force = raw.accel == "none";
+    for (const std::string &name : raw.generic) {
+        if (name == "all")
+            sampling.forced_features = all_features();
+        else
+            sampling.forced_features.insert(name);
+    }
+}
+
 /// Takes the texts apart that CLI11 has checked, and fills in the default outputs.
 void finish_options(Options &options, const RawOptions &raw) {
     if (!raw.resolution.empty())
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
-    options.light_samples = raw.light_samples == "auto" ? 0 : *parse_number<int>(raw.light_samples);
-    options.strategy = raw.strategy == "light"  ? Strategy::light
-                       : raw.strategy == "bsdf" ? Strategy::bsdf
-                                                : Strategy::mis;
-    options.independent = raw.sampler == "independent";
+    finish_sampling(options.sampling, raw);
     options.double_precision = raw.precision == "double";
     if (!raw.max_memory.empty())
         options.max_memory = parse_size(raw.max_memory);
@@ -460,14 +471,7 @@ void finish_options(Options &options, const RawOptions &raw) {
     options.test.effect = *parse_effect(raw.effect);
     if (options.command == Command::test && options.test.marked.empty())
         options.test.marked = fs::path(options.test.reference).stem().string() + "_differs.png";
-    options.accel = raw.accel == "none" ? Accel::none : Accel::bvh;
     options.layers.insert(raw.layers.begin(), raw.layers.end());
-    for (const std::string &name : raw.generic) {
-        if (name == "all")
-            options.generality = full_generality();
-        else
-            options.generality.insert(name);
-    }
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);

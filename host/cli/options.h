@@ -1,7 +1,7 @@
 #pragma once
 /// The command line: what it may say, checked completely, before anything else runs.
 
-#include "device/kernel_config.h"
+#include "config/sampling_options.h"
 
 #include <cstdint>
 #include <map>
@@ -13,7 +13,6 @@
 namespace clrender::cli {
 
 enum class Command { render, compare, test, list_devices, self_test };
-enum class Accel { bvh, none };
 
 struct Resolution {
     int width = 0;
@@ -51,12 +50,8 @@ struct Options {
     std::map<std::string, std::string> defines;
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
-    bool pixel_centers = false;
-    Accel accel = Accel::bvh;
-    bool independent = false;      ///< --sampler independent
-    bool double_precision = false; ///< --precision double
-    int light_samples = 0;         ///< 1, 2, 4, 8 or 16; 0: what suits the scene
-    Strategy strategy = Strategy::mis;
+    SamplingOptions sampling;
+    bool double_precision = false;           ///< --precision double
     std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together
     bool check = false;
     std::string stats;         ///< JSON file, or empty
@@ -65,11 +60,10 @@ struct Options {
     bool quiet = false;
     bool verbose = false;
     std::string kernel_dir; ///< kernel sources to use instead of the embedded ones, or empty
-    std::set<std::string> generality; ///< --generic, names of kernel_config.def
-    int batch = 0;                    ///< samples of a pixel in one launch; 0: the program chooses
-    int tile = 0;                     ///< pixel groups in one launch; 0: the program chooses
-    int band_rows = 0;                ///< rows of tiles in one band; 0: the program chooses
-    bool preview = false;             ///< a few samples of all pixels first, whatever the size
+    int batch = 0;          ///< samples of a pixel in one launch; 0: the program chooses
+    int tile = 0;           ///< pixel groups in one launch; 0: the program chooses
+    int band_rows = 0;      ///< rows of tiles in one band; 0: the program chooses
+    bool preview = false;   ///< a few samples of all pixels first, whatever the size
     CompareOptions compare;
     TestOptions test;
 };

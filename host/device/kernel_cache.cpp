@@ -121,7 +121,7 @@ bool pocl_files_are_sound(const std::string &payload) {
 }
 
 /// Removes PoCL's programs that no entry vouches for: a run that ended before it had written one
-/// may have left them unfinished, and PoCL aborts on such. Those of the last minute may be another
+/// may have left them unfinished, and PoCL aborts on such. Those of the last hour may be another
 /// run's. Only in a folder of our own.
 void remove_unknown_programs() {
     std::error_code error;
@@ -132,7 +132,7 @@ void remove_unknown_programs() {
          fs::directory_iterator(cache_folder() / "kernels", error))
         for (const PoclFile &file : described_pocl_files(read_file(entry.path()).value_or("")))
             known.insert(pocl_cache() / file.program());
-    const auto recent = fs::file_time_type::clock::now() - std::chrono::minutes(1);
+    const auto recent = fs::file_time_type::clock::now() - std::chrono::hours(1);
     const auto remove_old = [&](const fs::path &path) {
         if (fs::last_write_time(path, error) < recent && !error)
             fs::remove_all(path, error);

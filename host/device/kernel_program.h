@@ -2,7 +2,6 @@
 /// Kernels from their sources, specialised and compiled.
 
 #include "cl_context.h"
-#include "kernel_config.h"
 #include "kernel_sources.h"
 
 #include <functional>

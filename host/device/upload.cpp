@@ -1,8 +1,10 @@
 #include "device/upload.h"
 
-#include "flatten/large_array.h"
+#include "huge_pages.h"
 
 #include <algorithm>
+#include <cstring>
+#include <vector>
 
 namespace clrender {
 
@@ -10,8 +12,9 @@ namespace {
 
 /// Below this small pages do.
 constexpr std::size_t kLarge = std::size_t(4) << 20;
-/// Runtimes differ in whether they take buffers of a few bytes.
-constexpr std::size_t kLeast = 256;
+/// Runtimes differ in whether they take buffers of a few bytes; and the largest record, a table of a
+/// rough plastic in double precision, has as many.
+constexpr std::size_t kLeast = 512;
 
 /// A processor's runtime maps the buffer where it lies; nobody has touched it yet.
 void lay_into_large_pages(const cl::CommandQueue &queue, const cl::Buffer &buffer,
@@ -31,8 +34,15 @@ cl::Buffer upload(const cl::Context &context, const cl::CommandQueue &queue, con
         queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU) {
         lay_into_large_pages(queue, buffer, bytes);
     }
-    if (bytes > 0) {
+    if (bytes >= kLeast) {
         queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+    } else {
+        // Lanes that are off may read the first element of an array that has none.
+        std::vector<unsigned char> padded(kLeast);
+        if (bytes > 0) {
+            std::memcpy(padded.data(), data, bytes);
+        }
+        queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, kLeast, padded.data());
     }
     return buffer;
 }

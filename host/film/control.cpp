@@ -12,9 +12,9 @@ namespace clrender {
 
 namespace {
 
-/// Pixels of control tiles: as many for a figure to a tenth, where some pixels are noisier than
-/// others; and the share of all pixels where that is more.
-constexpr std::size_t least_pixels = 2048;
+/// Pixels of control tiles: as many for a figure to a tenth, where a few tiles make most of the
+/// noise; and the share of all tiles where that is more.
+constexpr std::size_t least_pixels = 8192;
 constexpr std::size_t tiles_per_control_tile = 100;
 
 /// As relMSE: keeps dark pixels from ruling the relative error.
@@ -44,17 +44,21 @@ double mean_around(const Image &image, std::size_t x, std::size_t y, std::size_t
     return count > 0 ? sum / count : double{image.f32[channel]};
 }
 
-/// A value that is known to a quarter is its own; one that is not is too bright where its error is
-/// large, and would weigh it too lightly.
-double relative_variance(const Image &image, const Image &variance, std::size_t x, std::size_t y,
-                         std::size_t channel) {
-    constexpr double known = 1.0 / 16;
+/// The weight of the squared error of a value. One that is known to a sixteenth is its own; one
+/// that is not is too bright where its error seems large, and would weigh it too lightly: in its
+/// place stands what its neighbours say, as far as its error allows.
+double weight_at(const Image &image, const Image &variance, std::size_t x, std::size_t y,
+                 std::size_t channel) {
+    constexpr double known = 1.0 / 256;
+    constexpr double most_errors = 2;
     const std::size_t i =
         (y * static_cast<std::size_t>(image.width) + x) * static_cast<std::size_t>(image.channels) +
         channel;
     const double value = double{image.f32[i]}, square = double{variance.f32[i]};
-    const bool is_known = square < known * value * value;
-    return square * weight_of(is_known ? value : mean_around(image, x, y, channel));
+    if (square * weight_of(value) < known)
+        return weight_of(value);
+    const double reach = most_errors * std::sqrt(square);
+    return weight_of(std::clamp(mean_around(image, x, y, channel), value - reach, value + reach));
 }
 
 /// Squared differences in a control tile, and what scatter makes expect of them.
@@ -62,22 +66,32 @@ struct Squares {
     double measured = 0, expected = 0;
 };
 
-Squares squares_of_tile(const ControlLayout &layout, std::size_t tile, const ControlPixel *pixels,
-                        const Image &image, const FilmUnits &units) {
+/// Adds a control pixel in the channel `channel`, whose mean in the picture is `mean`. With this
+/// mean, each rendering's sum of w (L - mean) has the error that it adds to the picture's.
+void add_squares(Squares &sum, const ControlPixel &pixel, const FilmUnits &units, int channel,
+                 double mean, double weight) {
+    double difference = 0;
+    for (const MeasuredPixel &rendering : pixel.rendering) {
+        const PixelSums sums(rendering.sums, units);
+        difference = sums.colour(channel) - mean * sums.weight() - difference;
+        sum.expected += weight * variance_of_sum(PixelMoments(rendering.moments, units),
+                                                 sums.weight(), channel, mean);
+    }
+    sum.measured += weight * difference * difference;
+}
+
+Squares squares_of_tile(const ControlSums &control, std::size_t tile, const Image &image,
+                        const Image &variance) {
     Squares sum;
-    const std::size_t left = tile % layout.columns() * layout.side;
-    const std::size_t top = tile / layout.columns() * layout.side;
-    for (std::size_t y = 0; y < std::min(layout.side, layout.height - top); ++y)
-        for (std::size_t x = 0; x < std::min(layout.side, layout.width - left); ++x) {
-            const ControlPixel &pixel = pixels[y * layout.side + x];
-            for (std::size_t c = 0; c < 3; ++c) {
-                const std::size_t channel = std::min(c, colour_channels(image) - 1);
-                const double weight = weight_of(mean_around(image, left + x, top + y, channel));
-                const double difference = units.difference(pixel, static_cast<int>(c));
-                sum.measured += weight * difference * difference;
-                sum.expected += weight * units.scatter(pixel, static_cast<int>(c));
-            }
-        }
+    const FilmUnits units(control.film_exponent);
+    for_each_control_pixel(control.layout, tile, 0, control.layout.height,
+                           [&](std::size_t pixel, std::size_t x, std::size_t y) {
+                               for (std::size_t c = 0; c < 3; ++c)
+                                   add_squares(sum, control.pixels[pixel], units,
+                                               static_cast<int>(c), control.means[3 * pixel + c],
+                                               weight_at(image, variance, x, y,
+                                                         std::min(c, colour_channels(image) - 1)));
+                           });
     return sum;
 }
 
@@ -90,17 +104,12 @@ std::size_t choose_control_group(const ControlLayout &layout) {
     return std::max<std::size_t>((layout.tiles() + wanted - 1) / wanted, 1);
 }
 
-VarianceFactor variance_factor(const ControlLayout &layout, std::span<const ControlPixel> pixels,
-                               const Image &image, int film_exponent) {
-    const FilmUnits units(film_exponent);
+VarianceFactor variance_factor(const ControlSums &control, const Image &image,
+                               const Image &variance) {
     std::vector<Squares> tiles;
     Squares sum;
-    for (std::size_t i = 0; i < layout.count(); ++i) {
-        const std::size_t tile =
-            clr_control_tile(static_cast<uint>(i), static_cast<uint>(layout.group),
-                             static_cast<uint>(layout.tiles()));
-        const ControlPixel *first = pixels.data() + i * layout.side * layout.side;
-        tiles.push_back(squares_of_tile(layout, tile, first, image, units));
+    for (std::size_t i = 0; i < control.layout.count(); ++i) {
+        tiles.push_back(squares_of_tile(control, i, image, variance));
         sum.measured += tiles.back().measured;
         sum.expected += tiles.back().expected;
     }
@@ -128,7 +137,10 @@ double mean_relative_variance(const Image &image, const Image &variance) {
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         for (std::size_t x = 0; x < width; ++x)
             for (std::size_t c = 0; c < colours; ++c)
-                rows[y] += relative_variance(image, variance, x, y, c);
+                rows[y] +=
+                    weight_at(image, variance, x, y, c) *
+                    double{variance.f32[(y * width + x) * static_cast<std::size_t>(image.channels) +
+                                        c]};
     });
     return std::accumulate(rows.begin(), rows.end(), 0.0) /
            static_cast<double>(std::max<std::size_t>(width * height, 1) * colours);

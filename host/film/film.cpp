@@ -39,10 +39,9 @@ using Channels = std::array<double, 4>;
 constexpr std::size_t alpha = 3;
 
 Channels mean(const PixelSums &sums) {
-    const double weight = sums.weight();
     Channels mean{};
-    for (int c = 0; weight != 0 && c < 4; ++c)
-        mean[static_cast<std::size_t>(c)] = sums.colour(c) / weight;
+    for (int c = 0; c < 4; ++c)
+        mean[static_cast<std::size_t>(c)] = sums.mean(c);
     return mean;
 }
 
@@ -110,19 +109,20 @@ Image film_samples(const Film &film) {
 
 Image film_variance(const Film &film, PixelFormat format) {
     const FilmUnits units(film.exponent);
-    const auto deviation = [&](std::size_t i, std::size_t c) {
+    const auto deviation = [&](std::size_t i, int c) {
         const PixelSums sums(film.pixels[i], units);
         const double weight = sums.weight();
-        return weight != 0 && sums.samples() > 1
-                   ? std::sqrt(sums.scatter(static_cast<int>(c))) / std::abs(weight)
-                   : std::numeric_limits<double>::infinity();
+        if (weight == 0 || sums.samples() < 2 || film.pixels[i].clamped != 0)
+            return std::numeric_limits<double>::infinity();
+        const PixelMoments moments(film.moments[i], units);
+        return std::sqrt(variance_of_sum(moments, weight, c, sums.mean(c))) / std::abs(weight);
     };
     Image image = make_image(
         film.width, film.height, colour_rows(format), has_alpha(format),
         [&](std::size_t i) {
             return Rgb{deviation(i, 0), deviation(i, 1), deviation(i, 2)};
         },
-        [&](std::size_t i) { return deviation(i, alpha); });
+        [&](std::size_t i) { return deviation(i, static_cast<int>(alpha)); });
     for (float &value : image.f32)
         value *= value;
     image.color_space = color_space(format);

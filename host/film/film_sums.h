@@ -8,13 +8,9 @@ namespace clrender {
 
 /// What the lowest bits of a film's sums are worth, given FrameData::film_exponent.
 struct FilmUnits {
-    double colour, alpha, colour_scatter, alpha_scatter, colour_difference;
+    double colour, alpha, colour_first, alpha_first, colour_second, alpha_second;
 
     explicit FilmUnits(int film_exponent);
-
-    /// Of R, G or B of a control tile's pixel.
-    [[nodiscard]] double difference(const ControlPixel &pixel, int channel) const;
-    [[nodiscard]] double scatter(const ControlPixel &pixel, int channel) const;
 };
 
 /// The sums of one pixel. Channels: R, G, B, alpha.
@@ -24,10 +20,10 @@ public:
 
     /// Of the filter's weight times the channel.
     [[nodiscard]] double colour(int channel) const;
-    /// Of the squared distances from the mean (FilmPixel::scatter).
-    [[nodiscard]] double scatter(int channel) const;
     /// Of the filter's weight.
     [[nodiscard]] double weight() const;
+    /// The weighted mean of the channel; 0 where there is no weight.
+    [[nodiscard]] double mean(int channel) const;
     [[nodiscard]] double samples() const { return pixel_.samples; }
 
 private:
@@ -35,8 +31,30 @@ private:
     const FilmUnits &units_;
 };
 
+/// The moments of one pixel.
+class PixelMoments {
+public:
+    PixelMoments(const FilmMoments &moments, const FilmUnits &units)
+        : moments_(moments), units_(units) {}
+
+    /// Of the squared weight.
+    [[nodiscard]] double weight() const;
+    /// Of the squared weight times the squared distance of the channel from `mean`; not negative.
+    [[nodiscard]] double scatter(int channel, double mean) const;
+
+private:
+    const FilmMoments &moments_;
+    const FilmUnits &units_;
+};
+
+/// The variance that independent samples would give to the sum of w (L - m) in a channel, m being
+/// the mean of the pixel, which samples with the sum of weights `weight` and these moments are part
+/// of.
+double variance_of_sum(const PixelMoments &moments, double weight, int channel, double mean);
+
 /// Adds the sums of other samples of the same pixel, exactly: sums of parts are the same bits
 /// in any order.
 void add_pixel(FilmPixel &sum, const FilmPixel &part);
+void add_moments(FilmMoments &sum, const FilmMoments &part);
 
 } // namespace clrender

@@ -1,10 +1,9 @@
 #pragma once
 /// The scene as the device gets it: arrays of shared structs, the acceleration structure,
-/// the light tables, and what of it all the kernel has to know.
+/// the light tables, and what else of the scene the kernel is specialised on.
 
 #include "bvh_builder.h"
-#include "device/kernel_config.h"
-#include "generality.h"
+#include "config/sampling_options.h"
 #include "scene/scene.h"
 #include "shared/bsdf_parameters.h"
 #include "shared/launch_data.h"
@@ -30,6 +29,25 @@ struct Placement {
 /// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
 using TriangleCorners = std::array<Vec3, 3>;
 
+/// What of a scene a kernel is specialised on and its arrays do not show (see config_of()).
+struct SceneFacts {
+    int sphere_count = 0;     ///< lane-wise spheres, of which
+    int opaque_count = 0;     ///< the first so many are opaque and rays start outside them,
+    int large_count = 0;      ///< of those the first so many as large as the scene or larger,
+    int huge_count = 0;       ///< and the last so many huge against the scene beside them
+    int shadowless_count = 0; ///< the last so many planars never come before a light
+    int planar_axes = 0;      ///< as PLANAR_AXES
+    int environment = CLR_ENVIRONMENT_NONE;
+    int light_samples = 1; ///< as LIGHT_SAMPLES
+    int filter_border = 0; ///< pixels around its own that a sample reaches
+    Strategy strategy = Strategy::mis;
+    bool shows_depth = false; ///< the depth integrator
+    bool hides_emitters = false;
+    bool has_alpha = false;
+    bool has_clip = false;
+    bool far_camera = false;
+};
+
 /// Its arrays are those of scene_buffers.def, which says what each holds.
 struct FlatScene {
     FrameData frame{};
@@ -37,16 +55,23 @@ struct FlatScene {
 #define CLR_BUFFER_ARRAY(type, name, meaning) std::vector<type> name;
     CLR_SCENE_BUFFERS(CLR_BUFFER_ARRAY)
 #undef CLR_BUFFER_ARRAY
-    /// All but LANES, TILE, SAMPLER and PROFILE, which the render decides.
-    KernelConfig config;
+    SceneFacts facts;
     std::size_t triangle_count = 0;
     /// What build_hierarchy() makes the tree of.
     std::vector<TriangleCorners> corners;
     std::vector<BvhSphere> bvh_spheres;
 
-    [[nodiscard]] bool has_hierarchy() const {
-        return config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
+    /// Primitives that every ray tests.
+    [[nodiscard]] std::size_t lane_wise_count() const {
+        return static_cast<std::size_t>(facts.sphere_count) + planars.size();
     }
+    [[nodiscard]] bool has_bvh_spheres() const {
+        return spheres.size() > static_cast<std::size_t>(facts.sphere_count);
+    }
+    /// Whether some material's shading frame follows dp/du.
+    [[nodiscard]] bool has_tangents() const;
+    /// The lane-wise sphere that is the only light, or none.
+    [[nodiscard]] int sole_light_sphere() const;
     [[nodiscard]] std::size_t bytes() const;
 };
 
@@ -62,20 +87,9 @@ template <class T> std::size_t bytes_of(const std::vector<T> &array) {
     return array.size() * sizeof(T);
 }
 
-/// What the command line says of the picture.
-struct FlattenOptions {
-    bool brute_force = false;   ///< --accel none
-    bool pixel_centers = false; ///< all samples at pixel centres
-    bool splat_filters = true;  ///< samples serve all pixels that the filter reaches, where it is
-                                ///< not too wide; else the filter is sampled
-    Strategy strategy = Strategy::mis;
-    int light_samples = 0;   ///< as LIGHT_SAMPLES in kernel_config.def; 0: chosen
-    Generality generality{}; ///< what the kernel is to be able to do beyond the scene
-};
-
 /// Flattens a parsed scene, all but the hierarchy: what the kernel has to know is known then. Warns
 /// of scenes without light.
-FlatScene flatten(const Scene &scene, const FlattenOptions &options = {});
+FlatScene flatten(const Scene &scene, const SamplingOptions &options = {});
 
 /// Builds the hierarchy over the triangles and spheres that need one. Warns of degenerate ones.
 void build_hierarchy(FlatScene &flat);

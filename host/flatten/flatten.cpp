@@ -1,5 +1,7 @@
 #include "flatten_parts.h"
 
+#include <algorithm>
+
 namespace clrender::inline CLR_PRECISION {
 
 std::size_t FlatScene::bytes() const {
@@ -8,8 +10,21 @@ std::size_t FlatScene::bytes() const {
     return bytes;
 }
 
-FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
+int FlatScene::sole_light_sphere() const {
+    const bool is_sphere = lights.size() == 1 && lights.front().kind == CLR_LIGHT_SPHERE;
+    if (!is_sphere || facts.environment == CLR_ENVIRONMENT_MAP || has_bvh_spheres())
+        return none;
+    return static_cast<int>(lights.front().prim);
+}
+
+bool FlatScene::has_tangents() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material &m) { return (m.kind & CLR_BSDF_TANGENTS) != 0; });
+}
+
+FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
     Flattening work{scene, options};
+    work.flat.facts.strategy = strategy_of(work);
     for (const Shape &shape : scene.shapes)
         work.boxes.push_back(shape_box(shape));
     work.flat.placement = choose_placement(scene, work.boxes);
@@ -20,13 +35,12 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options) {
             clr_real ignored[3];
             flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
         }
-    if (work.wants("HAS_UVS") || work.wants("HAS_TANGENTS"))
-        work.flat.config.HAS_UVS = 1;
     flatten_shapes(work);
     flatten_lights(work);
     flatten_camera(work);
     work.flat.frame.film_exponent = film_exponent(scene, work.flat.placement);
-    apply_generality(options.generality, work.flat);
+    if (work.wants("ENVIRONMENT"))
+        make_environment_map(work.flat);
     return std::move(work.flat);
 }
 

@@ -12,9 +12,6 @@ namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
-/// Tiles of one colour lie a tile apart, and no two of them may reach the same pixel.
-constexpr int max_border = CLR_LEAST_TILE / 2;
-
 /// Mitsuba's `depth` measures from the near plane, stated or not.
 constexpr double depth_near_clip = 0.01;
 
@@ -47,22 +44,13 @@ void flatten_film(Flattening &work) {
     f.crop_x = film.crop_x;
     f.crop_y = film.crop_y;
     const PixelFormat format = film.pixel_format;
-    flat.config.HAS_ALPHA = format == PixelFormat::luminance_alpha || format == PixelFormat::rgba ||
-                                    format == PixelFormat::xyza
-                                ? 1
-                                : 0;
+    flat.facts.has_alpha = format == PixelFormat::luminance_alpha || format == PixelFormat::rgba ||
+                           format == PixelFormat::xyza;
     f.filter_radius = static_cast<clr_real>(filter_radius(film.filter));
-    if (work.options.pixel_centers)
-        flat.config.FILTER = 2;
-    else if (film.filter.kind != FilterKind::box) {
-        // Splatting uses a sample for all pixels around it: three times fewer samples for the same
-        // noise with the default filter. Very wide filters would reach too far for it, and on a GPU
-        // a work-item would have to render a whole tile.
-        const int border = static_cast<int>(std::ceil(filter_radius(film.filter) - 0.5));
-        flat.config.FILTER = border <= max_border && work.options.splat_filters ? 3 : 1;
-        flat.config.BORDER = flat.config.FILTER == 3 ? border : 0;
-        flat.filter = tabulate_filter(film.filter);
-    }
+    if (work.options.pixel_centers || film.filter.kind == FilterKind::box)
+        return;
+    flat.facts.filter_border = static_cast<int>(std::ceil(filter_radius(film.filter) - 0.5));
+    flat.filter = tabulate_filter(film.filter);
 }
 
 void flatten_integrator(Flattening &work) {
@@ -73,53 +61,16 @@ void flatten_integrator(Flattening &work) {
     f.rr_depth = integrator.rr_depth;
     if (f.max_depth > max_depth_without_roulette)
         f.rr_depth = std::min(f.rr_depth, max_depth_without_roulette);
-    const Strategy strategy = strategy_of(work);
-    flat.config.STRATEGY = static_cast<int>(strategy);
-    flat.config.HIDE_EMITTERS = integrator.hide_emitters ? 1 : 0;
+    flat.facts.hides_emitters = integrator.hide_emitters;
+    flat.facts.shows_depth = integrator.kind == IntegratorKind::depth;
     if (integrator.kind == IntegratorKind::direct) {
         f.max_depth = 2;
         f.rr_depth = INT_MAX;
     }
-    // The last ray of a path would only bring what multiple importance sampling expects of it:
-    // light. After some bounces all of it may as well come from light sampling, where that cannot
-    // miss: of several lights it might choose one that is hidden, and seldom the one that shines.
-    constexpr int long_path = 5;
-    flat.config.FINAL_BY_LIGHTS = strategy == Strategy::mis && f.max_depth >= long_path &&
-                                          f.max_depth < INT_MAX && flat.config.ENVIRONMENT == 0 &&
-                                          flat.config.LIGHT_COUNT == 1 && !work.light_by_chance
-                                      ? 1
-                                      : 0;
-    flat.config.INTEGRATOR = integrator.kind == IntegratorKind::depth ? 1 : 0;
-    flat.config.HAS_ROULETTE =
-        integrator.kind != IntegratorKind::depth && f.rr_depth < f.max_depth ? 1 : 0;
 }
 
 /// A pixel's width on the image plane at distance 1 from which on float32 directions do for pixels.
 constexpr double narrow_pixel = CLR_EITHER(0x1p-17, 0x1p-46);
-
-/// The depths between which a shape lies, seen from the eye along `axis`.
-struct DepthRange {
-    double nearest, farthest;
-};
-
-DepthRange depth_range(const Shape &shape, const Box &box, const glm::dvec3 &eye,
-                       const glm::dvec3 &axis) {
-    if (shape.kind == ShapeKind::sphere) {
-        const double middle = glm::dot(glm::dvec3(shape.to_world[3]) - eye, axis);
-        return {middle - sphere_radius(shape), middle + sphere_radius(shape)};
-    }
-    DepthRange range{std::numeric_limits<double>::infinity(),
-                     -std::numeric_limits<double>::infinity()};
-    for (int i = 0; i < 8 && !box.empty(); ++i) {
-        const glm::dvec3 corner((i & 1) != 0 ? box.high.x : box.low.x,
-                                (i & 2) != 0 ? box.high.y : box.low.y,
-                                (i & 4) != 0 ? box.high.z : box.low.z);
-        const double depth = glm::dot(corner - eye, axis);
-        range.nearest = std::min(range.nearest, depth);
-        range.farthest = std::max(range.farthest, depth);
-    }
-    return range;
-}
 
 /// The depth at which camera rays start, in scene units: that of the nearest shape, so that neither
 /// the eye's place nor the direction loses pixels to rounding, however far away the eye is. Where a
@@ -131,9 +82,9 @@ double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
     const double unit = 1 / work.flat.placement.scale;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-        const DepthRange range = depth_range(scene.shapes[i], work.boxes[i], eye, axis);
-        if (range.farthest > 0)
-            nearest = std::min(nearest, range.nearest);
+        const Range depths = shape_range(scene.shapes[i], work.boxes[i], eye, axis);
+        if (depths.high > 0)
+            nearest = std::min(nearest, depths.low);
     }
     constexpr double margin = 0x1p-4, reach = 4, far_away = 16;
     const double before_all = std::isfinite(nearest) ? std::max(nearest - margin * unit, 0.0) : 0;
@@ -142,7 +93,7 @@ double start_depth(Flattening &work, const glm::dvec3 &axis, bool narrow) {
         scene.integrator.kind == IntegratorKind::depth ||
         scene.sensor.near_clip.value_or(0) > middle - reach * unit)
         return before_all;
-    work.flat.config.FAR_CAMERA = 1;
+    work.flat.facts.far_camera = true;
     return middle - reach * unit;
 }
 
@@ -186,9 +137,9 @@ void flatten_camera(Flattening &work) {
 
     const double unit = flat.placement.scale;
     f.length_unit = static_cast<clr_real>(1 / unit);
-    flat.config.HAS_CLIP = sensor.near_clip || sensor.far_clip ? 1 : 0;
+    flat.facts.has_clip = sensor.near_clip || sensor.far_clip;
+    f.focus_distance = 1; // without a lens, for kernels that are forced to have one
     if (sensor.kind == SensorKind::thinlens) {
-        flat.config.HAS_LENS = sensor.aperture_radius > 0 ? 1 : 0;
         f.aperture_radius = static_cast<clr_real>(unit * sensor.aperture_radius);
         f.focus_distance = static_cast<clr_real>(unit * sensor.focus_distance);
     }

@@ -12,21 +12,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Linear radiance of pixel `at`, grey images giving the same for all channels.
+/// Linear radiance of pixel `at`.
 Rgb radiance_of(const Emitter &emitter, std::size_t at) {
-    const Image &image = *emitter.bitmap;
-    const auto channels = static_cast<std::size_t>(image.channels);
-    Rgb c;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i = at * channels + (channels >= 3 ? k : 0);
-        double value = 0;
-        if (image.type == PixelType::f32)
-            value = image.f32[i];
-        else
-            value = emitter.raw ? image.u8[i] / 255.0 : srgb_decode(image.u8[i] / 255.0);
-        c[static_cast<int>(k)] = value * emitter.scale;
-    }
-    return c;
+    return texel_color(*emitter.bitmap, at, {emitter.raw}) * emitter.scale;
 }
 
 /// Solid angle of the cells between rows j and j + 1 of `rows` + 1, each of `width` in the row.
@@ -159,7 +147,7 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
         const Rgb radiance = work.scene.textures[static_cast<std::size_t>(emitter.radiance)].value;
         for (int c = 0; c < 3; ++c)
             f.env_radiance[c] = static_cast<clr_real>(radiance[c]);
-        flat.config.ENVIRONMENT = 1;
+        flat.facts.environment = CLR_ENVIRONMENT_CONSTANT;
         return;
     }
 
@@ -173,22 +161,22 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
         for (int column = 0; column < 3; ++column)
             f.env_rotation[4 * row + column] = static_cast<clr_real>(axis[column]);
     }
-    *power = build_cells(flat, strategy_of(work) == Strategy::light);
+    *power = build_cells(flat, flat.facts.strategy == Strategy::light);
     // A map that is black all over adds nothing.
-    flat.config.ENVIRONMENT = *power > 0 ? 2 : 1;
+    flat.facts.environment = *power > 0 ? CLR_ENVIRONMENT_MAP : CLR_ENVIRONMENT_CONSTANT;
 }
 
-void make_environment_a_map(FlatScene &flat) {
-    // Where light sampling alone counts, a map and a constant environment mean different things.
-    if (flat.config.ENVIRONMENT == 2 || flat.config.STRATEGY == static_cast<int>(Strategy::light))
+void make_environment_map(FlatScene &flat) {
+    const int own = flat.facts.environment;
+    if (own == CLR_ENVIRONMENT_MAP || flat.facts.strategy == Strategy::light)
         return;
     FrameData &f = flat.frame;
     constexpr std::size_t side = 2;
     flat.env_texels.clear();
     for (std::size_t i = 0; i < (side + 1) * side; ++i)
         for (int k = 0; k < 4; ++k)
-            flat.env_texels.push_back(k < 3 && flat.config.ENVIRONMENT == 1 ? f.env_radiance[k]
-                                                                            : 0.0f);
+            flat.env_texels.push_back(k < 3 && own == CLR_ENVIRONMENT_CONSTANT ? f.env_radiance[k]
+                                                                               : 0.0f);
     flat.env_cdf.clear();
     flat.env_guide.clear();
     const std::vector<double> even(side, 1.0);
@@ -197,7 +185,6 @@ void make_environment_a_map(FlatScene &flat) {
     f.env_width = f.env_height = side;
     f.env_probability = 0;
     f.env_rotation[0] = f.env_rotation[5] = f.env_rotation[10] = 1;
-    flat.config.ENVIRONMENT = 2;
 }
 
 } // namespace clrender::inline CLR_PRECISION

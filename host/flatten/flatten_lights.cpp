@@ -1,5 +1,5 @@
-#include "flatten_parts.h"
 #include "light_tree.h"
+#include "shape_parts.h"
 
 #include <algorithm>
 #include <bit>
@@ -34,20 +34,11 @@ double mean_luminance(const Texture &texture) {
     if (texture.kind == TextureKind::checkerboard)
         return (luminance(texture.color0) + luminance(texture.color1)) / 2;
     const Image &image = *texture.bitmap;
-    const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        Rgb c;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t at = i * channels + (channels >= 3 ? k : 0);
-            c[static_cast<int>(k)] = image.type == PixelType::f32 ? image.f32[at]
-                                     : texture.raw                ? image.u8[at] / 255.0
-                                                   : srgb_decode(image.u8[at] / 255.0);
-        }
-        sum += luminance(c);
-    }
+    for (std::size_t i = 0; i < count; ++i)
+        sum += luminance(texel_color(image, i, texture.format));
     return sum / static_cast<double>(count);
 }
 
@@ -88,8 +79,7 @@ void set_cone(const LightTriangle &triangle, const glm::dvec3 &own, LightExtent 
     glm::dvec3 sum{0.0};
     glm::dvec3 normal[3];
     for (std::size_t c = 0; c < 3; ++c) {
-        normal[c] = {in_single(triangle.normals[3 * c]), in_single(triangle.normals[3 * c + 1]),
-                     in_single(triangle.normals[3 * c + 2])};
+        normal[c] = in_single(triangle.normals[c]);
         sum += normal[c];
     }
     extent.cosine = -1;
@@ -115,12 +105,25 @@ LightExtent triangle_extent(const LightTriangle &triangle, const TriangleCorners
     return extent;
 }
 
+/// A surface that shines, as the functions for its kind of shape take it.
+struct AreaEmitter {
+    Light base{};        ///< its radiance
+    double radiance = 0; ///< mean luminance
+    int shape = none;    ///< index into Scene::shapes
+};
+
 /// One light for each triangle, so that its number tells the light; those of no area are never
 /// chosen.
-void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, double radiance,
-              LightList &list) {
+void add_triangles(Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                   LightList &list) {
     FlatScene &flat = work.flat;
+    info.kind = CLR_LIGHT_TRIANGLE;
+    if (!(emitter.radiance > 0))
+        return;
     const auto [first, count] = work.triangles_of_shape.at(emitter.shape);
+    info.density = 1;
+    info.light = list.size();
+    info.first_prim = static_cast<uint>(flat.lane_wise_count() + first);
     const bool by_vertex = !flat.triangles.empty();
     for (std::size_t t = first; t < first + count; ++t) {
         const TriangleCorners &corner = flat.corners[t];
@@ -130,90 +133,67 @@ void add_mesh(Flattening &work, const Emitter &emitter, const Light &base, doubl
         store(triangle.v0, glm::dvec3(corner[0]));
         store(triangle.e1, glm::dvec3(e1));
         store(triangle.e2, glm::dvec3(e2));
-        const clr_real default_uvs[6] = {0, 0, 1, 0, 0, 1};
-        std::copy(default_uvs, default_uvs + 6, triangle.uvs);
+        triangle.uvs[1][0] = triangle.uvs[2][1] = 1;
         for (std::size_t c = 0; by_vertex && c < 3; ++c) {
             const std::size_t vertex = flat.triangles[3 * t + c];
             if (!flat.normals.empty() && !std::isnan(flat.normals[3 * vertex])) {
                 triangle.smooth = 1;
-                std::copy_n(&flat.normals[3 * vertex], 3, &triangle.normals[3 * c]);
+                std::copy_n(&flat.normals[3 * vertex], 3, triangle.normals[c]);
             }
             if (!flat.uvs.empty() && !std::isnan(flat.uvs[2 * vertex]))
-                std::copy_n(&flat.uvs[2 * vertex], 2, &triangle.uvs[2 * c]);
+                std::copy_n(&flat.uvs[2 * vertex], 2, triangle.uvs[c]);
         }
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(e1), glm::dvec3(e2)));
-        Light light = base;
+        Light light = emitter.base;
         light.kind = CLR_LIGHT_TRIANGLE;
         light.prim = static_cast<uint>(flat.light_triangles.size());
         light.area = static_cast<clr_real>(area);
         flat.light_triangles.push_back(triangle);
-        list.add(light, triangle_extent(triangle, corner, radiance));
+        list.add(light, triangle_extent(triangle, corner, emitter.radiance));
     }
 }
 
-void add_area(Flattening &work, std::size_t index, LightList &list) {
-    FlatScene &flat = work.flat;
-    const Emitter &emitter = work.scene.emitters[index];
-    const Texture &texture = work.scene.textures[static_cast<std::size_t>(emitter.radiance)];
-    const double radiance = mean_luminance(texture);
-    flat.config.HAS_AREA_EMITTERS = 1;
-    Light light{};
-    light.texture = flatten_texture(work, emitter.radiance, Rgb{0.0}, light.radiance);
-    EmitterInfo &info = flat.emitters[index];
-    std::copy_n(light.radiance, 3, info.radiance);
-    info.texture = light.texture;
-
-    const auto found = work.primitive_of_shape.find(emitter.shape);
-    if (found == work.primitive_of_shape.end()) {
-        info.kind = CLR_LIGHT_TRIANGLE;
-        if (!(radiance > 0)) {
-            work.light_by_chance = true;
-            return;
-        }
-        info.density = 1;
-        info.light = list.size() -
-                     static_cast<uint>(flat.config.SPHERE_COUNT + flat.config.PLANAR_COUNT) -
-                     static_cast<uint>(work.triangles_of_shape.at(emitter.shape).first);
-        add_mesh(work, emitter, light, radiance, list);
-        return;
-    }
+/// The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
+void add_sphere(const Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                LightList &list) {
+    const FlatScene &flat = work.flat;
+    const uint bvh_sphere = flat.frame.prim_bvh_sphere;
+    const auto lane_wise = static_cast<uint>(flat.facts.sphere_count);
+    Light light = emitter.base;
+    light.prim = info.first_prim = work.primitive_of_shape.at(emitter.shape);
     info.light = list.size();
-    light.prim = found->second;
-    if (work.scene.shapes[static_cast<std::size_t>(emitter.shape)].kind == ShapeKind::sphere) {
-        // The sphere's own entry, whether it is tested lane-wise or lies in the BVH.
-        const uint bvh_sphere = flat.frame.prim_bvh_sphere;
-        const auto lane_wise = static_cast<uint>(flat.config.SPHERE_COUNT);
-        const Sphere &sphere =
-            flat.spheres[light.prim < bvh_sphere ? light.prim
-                                                 : light.prim - bvh_sphere + lane_wise];
-        light.shape = light.prim < bvh_sphere
-                          ? light.prim
-                          : flat.shape_of[light.prim - lane_wise - flat.planars.size()];
-        info.kind = light.kind = CLR_LIGHT_SPHERE;
-        std::copy_n(sphere.center, 3, light.position);
-        std::copy_n(sphere.center, 3, info.center);
-        light.area = info.radius = sphere.radius;
-        // A sphere that shines inwards is met by chance only: nothing outside sees it.
-        if (!(sphere.radius > 0) || !(radiance > 0)) {
-            work.light_by_chance = true;
-            return;
-        }
-        info.density = 1;
-        const glm::dvec3 center = in_single(sphere.center);
-        const double radius = in_single(sphere.radius);
-        list.add(
-            light,
-            {center - radius, center + radius, {0, 0, 1}, -1, pi * radius * radius * radiance});
+    const Sphere &sphere =
+        flat.spheres[light.prim < bvh_sphere ? light.prim : light.prim - bvh_sphere + lane_wise];
+    light.shape = light.prim < bvh_sphere
+                      ? light.prim
+                      : flat.shape_of[light.prim - lane_wise - flat.planars.size()];
+    info.kind = light.kind = CLR_LIGHT_SPHERE;
+    std::copy_n(sphere.center, 3, light.position);
+    std::copy_n(sphere.center, 3, info.center);
+    light.radius = info.radius = sphere.radius;
+    // A sphere that shines inwards is met by chance only: nothing outside sees it.
+    if (!(sphere.radius > 0) || !(emitter.radiance > 0))
         return;
-    }
-    light.prim -= static_cast<uint>(flat.config.SPHERE_COUNT);
+    info.density = 1;
+    const glm::dvec3 center = in_single(sphere.center);
+    const double radius = in_single(sphere.radius);
+    list.add(
+        light,
+        {center - radius, center + radius, {0, 0, 1}, -1, pi * radius * radius * emitter.radiance});
+}
+
+void add_planar(const Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                LightList &list) {
+    const FlatScene &flat = work.flat;
+    Light light = emitter.base;
+    info.first_prim = work.primitive_of_shape.at(emitter.shape);
+    info.light = list.size();
+    light.prim = info.first_prim - static_cast<uint>(flat.facts.sphere_count);
     info.kind = light.kind = CLR_LIGHT_PLANAR;
     const Planar &planar = flat.planars[light.prim];
     light.area = planar.area;
-    if (!(radiance > 0) || !(planar.area > 0)) {
-        work.light_by_chance = true;
+    if (!(emitter.radiance > 0) || !(planar.area > 0))
         return;
-    }
     info.density = 1 / planar.area;
     LightExtent extent;
     for (int c = 0; c < 3; ++c) {
@@ -223,8 +203,32 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         extent.axis[c] = in_single(planar.normal[c]);
     }
     extent.cosine = 1;
-    extent.intensity = in_single(light.area) * radiance;
+    extent.intensity = in_single(light.area) * emitter.radiance;
     list.add(light, extent);
+}
+
+void add_area(Flattening &work, std::size_t index, LightList &list) {
+    const Emitter &source = work.scene.emitters[index];
+    EmitterInfo &info = work.flat.emitters[index];
+    AreaEmitter emitter;
+    emitter.shape = source.shape;
+    emitter.radiance =
+        mean_luminance(work.scene.textures[static_cast<std::size_t>(source.radiance)]);
+    info.texture = emitter.base.texture =
+        flatten_texture(work, source.radiance, Rgb{0.0}, info.radiance);
+    std::copy_n(info.radiance, 3, emitter.base.radiance);
+    switch (test_of(work.scene.shapes[static_cast<std::size_t>(source.shape)], work)) {
+    case ShapeTest::sphere:
+    case ShapeTest::bvh_sphere:
+        add_sphere(work, emitter, info, list);
+        break;
+    case ShapeTest::planar:
+        add_planar(work, emitter, info, list);
+        break;
+    case ShapeTest::triangles:
+        add_triangles(work, emitter, info, list);
+        break;
+    }
 }
 
 /// The share of the samples that a map gets beside other lights: by the irradiance of either at the
@@ -261,16 +265,13 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
     if (sole.kind == CLR_LIGHT_TRIANGLE)
         for (EmitterInfo &info : flat.emitters)
             info.density = info.density > 0 ? 1 / sole.area : 0.0f;
-    if (flat.config.ENVIRONMENT == 2 || flat.config.HAS_BVH_SPHERES != 0)
+    if (flat.facts.environment == CLR_ENVIRONMENT_MAP || flat.has_bvh_spheres())
         return;
-    if (sole.kind == CLR_LIGHT_SPHERE)
-        flat.config.SOLE_LIGHT_SPHERE = static_cast<int>(sole.prim);
     double distance = INFINITY;
-    for (int i = 0; i < flat.config.WIDE_COUNT; ++i)
-        if (i != flat.config.SOLE_LIGHT_SPHERE)
+    for (int i = 0; i < flat.facts.large_count; ++i)
+        if (i != flat.sole_light_sphere())
             distance = std::min(
                 distance, shadow_free_distance(extent, flat.spheres[static_cast<std::size_t>(i)]));
-    flat.config.SHADOW_FREE_COUNT = distance > 0 ? flat.config.WIDE_COUNT : 0;
     flat.frame.shadow_free_distance = static_cast<clr_real>(distance);
 }
 
@@ -281,7 +282,7 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
 int light_samples(const Flattening &work, const LightList &list) {
     if (work.options.light_samples > 0)
         return work.options.light_samples;
-    const uint choices = list.size() + (work.flat.config.ENVIRONMENT == 2 ? 1 : 0);
+    const uint choices = list.size() + (work.flat.facts.environment == CLR_ENVIRONMENT_MAP ? 1 : 0);
     const Integrator &integrator = work.scene.integrator;
     if (integrator.kind == IntegratorKind::depth || choices == 0)
         return 1;
@@ -298,7 +299,7 @@ int light_samples(const Flattening &work, const LightList &list) {
     const LightExtent &sole = list.extents.front();
     const double size = glm::length(sole.upper - sole.lower);
     const double distance = glm::length((sole.lower + sole.upper) * 0.5);
-    return work.flat.config.ENVIRONMENT != 0 && size > broad * distance ? 2 : 1;
+    return work.flat.facts.environment != CLR_ENVIRONMENT_NONE && size > broad * distance ? 2 : 1;
 }
 
 } // namespace
@@ -310,7 +311,6 @@ double luminance(const Rgb &c) {
 void flatten_lights(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.emitters.resize(work.scene.emitters.size());
-    flat.config.SOLE_EMITTER = flat.emitters.size() == 1 ? 1 : 0;
     LightList list;
     double map_power = 0;
     for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {
@@ -327,31 +327,19 @@ void flatten_lights(Flattening &work) {
             break;
         }
     }
-    if (flat.config.ENVIRONMENT == 2)
+    if (flat.facts.environment == CLR_ENVIRONMENT_MAP)
         flat.frame.env_probability =
             static_cast<clr_real>(environment_share(list.extents, map_power));
-    flat.config.LIGHT_SAMPLES = light_samples(work, list);
+    flat.facts.light_samples = light_samples(work, list);
     // A tree needs two lights; those without light are never chosen.
     while (work.wants("LIGHT_COUNT") && list.size() < 2)
         list.add({}, {});
-    for (const Light &light : list.lights) {
-        flat.config.HAS_POINT_LIGHTS |= light.kind == CLR_LIGHT_POINT ? 1 : 0;
-        flat.config.HAS_SPHERE_LIGHTS |= light.kind == CLR_LIGHT_SPHERE ? 1 : 0;
-        flat.config.HAS_PLANAR_LIGHTS |= light.kind == CLR_LIGHT_PLANAR ? 1 : 0;
-        flat.config.HAS_TRIANGLE_LIGHTS |= light.kind == CLR_LIGHT_TRIANGLE ? 1 : 0;
-    }
     flat.lights = list.lights;
-    flat.config.LIGHT_COUNT = flat.lights.size() > 1 ? -1 : static_cast<int>(flat.lights.size());
     if (flat.lights.size() > 1) {
         LightTree tree = build_light_tree(list.extents);
         for (std::size_t i = 0; i < flat.lights.size(); ++i)
             flat.lights[i].trail = tree.trail[i];
         flat.light_nodes = std::move(tree.nodes);
-        flat.config.HAS_ORIENTED_LIGHTS =
-            std::any_of(list.extents.begin(), list.extents.end(),
-                        [](const LightExtent &e) { return e.cosine > -1; })
-                ? 1
-                : 0;
     } else if (flat.lights.size() == 1) {
         set_sole_light(list.extents.front(), flat);
     }

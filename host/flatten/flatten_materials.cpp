@@ -14,30 +14,12 @@ void share_dielectric_fields(FlatScene &flat) {
     if (first == flat.materials.end())
         return;
     const Material model = *first;
-    int &shades = flat.config.MATERIAL_SHADES;
-    for (const Material &m : flat.materials) {
-        if (!is_dielectric(m))
-            continue;
-        if (!std::equal(m.color2, m.color2 + 3, model.color2))
-            shades |= 1;
-        if (m.eta[0] != model.eta[0])
-            shades |= 2;
-    }
+    const int shades = dielectric_shades(flat.materials);
     for (Material &m : flat.materials) {
-        if ((shades & 1) == 0)
+        if ((shades & CLR_SHADES_TINTS) == 0)
             std::copy_n(model.color2, 3, m.color2);
-        if ((shades & 2) == 0 && m.kind != CLR_BSDF_CONDUCTOR)
+        if ((shades & CLR_SHADES_INDICES) == 0 && m.kind != CLR_BSDF_CONDUCTOR)
             std::copy_n(model.eta, 3, m.eta);
-    }
-}
-
-bool is_node(const Material &material) {
-    switch (material.kind & CLR_BSDF_KIND_MASK) {
-#define CLR_BSDF_NODE(KIND, meaning) case CLR_BSDF_##KIND:
-#include "shared/bsdf_list.def"
-        return true;
-    default:
-        return false;
     }
 }
 
@@ -58,37 +40,25 @@ void fill_parameter_pool(const std::vector<PackedBsdf> &packed, Flattening &work
         flat.bsdf_parameters.insert(flat.bsdf_parameters.end(), parameters.begin(),
                                     parameters.end());
     }
-    flat.config.BSDF_PARAMETERS = static_cast<int>(most);
-}
-
-/// What the kernel has to know of the materials and their parameters.
-void set_features(FlatScene &flat) {
-    KernelConfig &config = flat.config;
-    const auto has_kind = [&](uint kind) {
-        return std::any_of(flat.materials.begin(), flat.materials.end(), [&](const Material &m) {
-            return (m.kind & CLR_BSDF_KIND_MASK) == kind;
-        });
-    };
-    const auto has_flag = [&](uint flag) {
-        return std::any_of(flat.materials.begin(), flat.materials.end(),
-                           [&](const Material &m) { return (m.kind & flag) != 0; });
-    };
-#define CLR_BSDF(KIND, kind, width, lobes, meaning)                                                \
-    config.HAS_##KIND = has_kind(CLR_BSDF_##KIND) ? 1 : 0;
-#define CLR_BSDF_NODE(KIND, meaning) config.HAS_##KIND = has_kind(CLR_BSDF_##KIND) ? 1 : 0;
-#include "shared/bsdf_list.def"
-    config.HAS_SMOOTH_TRANSMISSION = has_flag(CLR_BSDF_TRANSMITS) ? 1 : 0;
-    config.HAS_TANGENTS = has_flag(CLR_BSDF_TANGENTS) ? 1 : 0;
-    config.HAS_UVS |= config.HAS_TANGENTS;
-    config.HAS_BECKMANN = has_flag(CLR_BSDF_BECKMANN) ? 1 : 0;
-    config.HAS_GGX = has_flag(CLR_BSDF_GGX) ? 1 : 0;
-    const auto count = static_cast<std::size_t>(config.BSDF_PARAMETERS);
-    for (std::size_t i = 0; i < flat.bsdf_parameters.size(); ++i)
-        if (flat.bsdf_parameters[i].texture != CLR_NONE && !is_node(flat.materials[i / count]))
-            config.BSDF_TEXTURED |= 1 << i % count;
 }
 
 } // namespace
+
+int dielectric_shades(const std::vector<Material> &materials) {
+    const Material *model = nullptr;
+    int shades = 0;
+    for (const Material &m : materials) {
+        if (m.kind != CLR_BSDF_DIELECTRIC)
+            continue;
+        if (model == nullptr)
+            model = &m;
+        if (!std::equal(m.color2, m.color2 + 3, model->color2))
+            shades |= CLR_SHADES_TINTS;
+        if (m.eta[0] != model->eta[0])
+            shades |= CLR_SHADES_INDICES;
+    }
+    return shades;
+}
 
 uint MaterialPacker::material_of(int bsdf, BsdfSide side) {
     if (bsdf == none)
@@ -149,7 +119,6 @@ void flatten_materials(Flattening &work) {
         work.sides_of_bsdf[shape.bsdf] = front | back << 16;
     }
     fill_parameter_pool(packer.packed, work);
-    set_features(flat);
     share_dielectric_fields(flat);
 }
 

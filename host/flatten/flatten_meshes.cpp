@@ -134,10 +134,10 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
 
 } // namespace
 
-void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
+void flatten_meshes(Flattening &work) {
     FlatScene &flat = work.flat;
     VertexData wanted;
-    wanted.uvs = flat.config.HAS_UVS != 0;
+    wanted.uvs = work.needs_uvs();
     wanted.normals = work.wants("HAS_VERTEX_NORMALS");
     for (const Shape &shape : work.scene.shapes)
         wanted.normals |= shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
@@ -146,15 +146,15 @@ void flatten_meshes(Flattening &work, bool rectangles_in_bvh) {
         const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
         TriangleRange &range = work.triangles_of_shape[static_cast<int>(i)];
         range.first = flat.corners.size();
-        if (shape.kind == ShapeKind::mesh)
-            append_mesh(shape, *shape.mesh, wanted, work);
-        else if (shape.kind == ShapeKind::rectangle && rectangles_in_bvh)
-            append_mesh(shape, rectangle_mesh(mirrored), wanted, work);
+        if (test_of(shape, work) == ShapeTest::triangles) {
+            if (shape.mesh)
+                append_mesh(shape, *shape.mesh, wanted, work);
+            else
+                append_mesh(shape, rectangle_mesh(mirrored), wanted, work);
+        }
         range.count = flat.corners.size() - range.first;
     }
     flat.triangle_count = flat.corners.size();
-    flat.config.HAS_TRIANGLES = flat.corners.empty() ? 0 : 1;
-    flat.config.HAS_VERTEX_NORMALS = wanted.normals ? 1 : 0;
 }
 
 } // namespace clrender::inline CLR_PRECISION

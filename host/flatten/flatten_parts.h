@@ -16,7 +16,7 @@ struct TriangleRange {
 /// A flat scene in the making: how the scene's numbers map to the flat one's.
 struct Flattening {
     const Scene &scene;
-    const FlattenOptions &options;
+    const SamplingOptions &options;
     FlatScene flat{};
     std::vector<Box> boxes{};                 ///< by Scene::shapes, in world coordinates
     std::map<int, uint> texture_index{};      ///< by Scene::textures
@@ -25,10 +25,18 @@ struct Flattening {
     std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none
     std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
-    bool light_by_chance = false; ///< some light is never sampled: only paths that meet it bring it
+    bool spheres_in_bvh = false;    ///< there are too many to test them one by one
+    bool rectangles_in_bvh = false; ///< likewise, with the disks; as triangles
 
     /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
-    [[nodiscard]] bool wants(const char *name) const { return options.generality.count(name) != 0; }
+    [[nodiscard]] bool wants(const char *name) const {
+        return options.forced_features.count(name) != 0;
+    }
+    /// Whether surfaces need coordinates; asked when all textures are flattened.
+    [[nodiscard]] bool needs_uvs() const {
+        return !flat.textures.empty() || flat.has_tangents() || wants("HAS_UVS") ||
+               wants("HAS_TANGENTS");
+    }
 };
 
 /// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
@@ -39,6 +47,9 @@ Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
 void flatten_materials(Flattening &work);
+
+/// What differs between the dielectrics among these: CLR_SHADES_TINTS, CLR_SHADES_INDICES or both.
+int dielectric_shades(const std::vector<Material> &materials);
 
 /// Index of a texture in the flat scene; CLR_NONE for a constant one and for none, whose colour
 /// (`absent` for none) goes to constant[0..2].
@@ -55,8 +66,10 @@ void flatten_lights(Flattening &work);
 /// light sampling goes by, and is left alone without a map.
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power);
 
-/// A constant environment, or none, as a map that light sampling never chooses.
-void make_environment_a_map(FlatScene &flat);
+/// The map of a constant environment, or of none, that light sampling never chooses: for kernels
+/// that are forced to have one. Not where light sampling alone counts, for which a map and a
+/// constant environment mean different things.
+void make_environment_map(FlatScene &flat);
 
 /// The option, where the scene's integrator does not say otherwise.
 Strategy strategy_of(const Flattening &work);

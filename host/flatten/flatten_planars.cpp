@@ -92,15 +92,12 @@ unsigned axis_bits(const Shape &shape, const Placement &placement) {
 
 /// The planars' shapes in the order of their primitives: those that cast no shadows last, and for
 /// each kind of test one after the other, so that like scenes need the same kernel.
-std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_in_bvh,
-                                       KernelConfig &config) {
+std::vector<std::size_t> order_planars(const Flattening &work, SceneFacts &facts) {
     const Scene &scene = work.scene;
     std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-        const ShapeKind kind = scene.shapes[i].kind;
-        if (kind == ShapeKind::disk || (kind == ShapeKind::rectangle && !rectangles_in_bvh))
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        if (test_of(scene.shapes[i], work) == ShapeTest::planar)
             order.push_back(i);
-    }
     const auto bits_of = [&](std::size_t i) {
         return axis_bits(scene.shapes[i], work.flat.placement);
     };
@@ -110,44 +107,41 @@ std::vector<std::size_t> order_planars(const Flattening &work, bool rectangles_i
         const ShadowlessPlanars shadowless(scene, unseen / work.flat.placement.scale);
         const auto last = std::stable_partition(
             order.begin(), order.end(), [&](std::size_t i) { return !shadowless.contains(i); });
-        config.SHADOWLESS_PLANAR_COUNT = static_cast<int>(order.end() - last);
+        facts.shadowless_count = static_cast<int>(order.end() - last);
     }
     unsigned axes = 0; // where there are more planars than bits, they are disks, and have none
     for (std::size_t i = 0; i < order.size(); ++i)
         if (const unsigned bits = bits_of(order[i]); bits != 0)
             axes |= bits << (2 * i);
-    config.PLANAR_AXES = static_cast<int>(axes);
+    facts.planar_axes = static_cast<int>(axes);
     return order;
 }
 
 } // namespace
 
-void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placement) {
+void store_coordinates(PrimitiveRecord &out, const Shape &shape, const Placement &placement) {
     const DualBasis dual = dual_basis(glm::dvec3(shape.to_world[0]) * placement.scale,
                                       glm::dvec3(shape.to_world[1]) * placement.scale);
     const glm::dvec3 origin = placement.exact(glm::dvec3(shape.to_world[3]));
     for (int c = 0; c < 3; ++c) {
-        out[c] = static_cast<clr_real>(dual.ra[c]);
-        out[4 + c] = static_cast<clr_real>(dual.rb[c]);
+        out.to_a[c] = static_cast<clr_real>(dual.ra[c]);
+        out.to_b[c] = static_cast<clr_real>(dual.rb[c]);
     }
-    out[3] = static_cast<clr_real>(-glm::dot(dual.ra, origin));
-    out[7] = static_cast<clr_real>(-glm::dot(dual.rb, origin));
+    out.to_a[3] = static_cast<clr_real>(-glm::dot(dual.ra, origin));
+    out.to_b[3] = static_cast<clr_real>(-glm::dot(dual.rb, origin));
 }
 
-void flatten_planars(Flattening &work, bool rectangles_in_bvh) {
+void flatten_planars(Flattening &work) {
     FlatScene &flat = work.flat;
-    for (const std::size_t i : order_planars(work, rectangles_in_bvh, flat.config)) {
+    for (const std::size_t i : order_planars(work, flat.facts)) {
         const Shape &shape = work.scene.shapes[i];
         append_lane_wise_shape(i, work);
         flat.planars.push_back(flatten_planar(shape, flat.placement));
-        if (shape.kind == ShapeKind::disk)
-            flat.config.HAS_DISKS = 1;
     }
     if (work.wants("PLANAR_COUNT") && flat.planars.empty()) {
         append_no_shape(work);
         flat.planars.emplace_back();
     }
-    flat.config.PLANAR_COUNT = static_cast<int>(flat.planars.size());
     // Up to these coordinates no planar's hits are near its outline.
     double rim = 1;
     for (const Planar &p : flat.planars) {

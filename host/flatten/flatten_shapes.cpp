@@ -25,7 +25,7 @@ Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
 
 /// True if no ray can start inside the sphere: it lets none through, and the camera is outside. A
 /// path cannot get in without meeting the surface, unless a clip plane cuts the surface open.
-bool is_solid(const Scene &scene, const Shape &shape) {
+bool is_opaque(const Scene &scene, const Shape &shape) {
     if (scene.sensor.near_clip || scene.integrator.kind == IntegratorKind::depth)
         return false;
     if (lets_light_through(scene, shape.bsdf) ||
@@ -38,49 +38,32 @@ bool is_solid(const Scene &scene, const Shape &shape) {
 }
 
 /// Spheres from this radius on, in the renderer's units, are as large as the scene.
-constexpr double wide_radius = 0.5;
-/// From this radius on, a rounding of the radius is larger than what is seen of the scene.
-constexpr double huge_radius = 64;
-
-/// True if the sphere is large and its surface no farther from the origin than its radius.
-bool is_beside(const Shape &shape, const Placement &placement, double least_radius) {
-    const double radius = sphere_radius(shape) * placement.scale;
-    return radius >= least_radius &&
-           glm::length(placement.exact(glm::dvec3(shape.to_world[3]))) < 2 * radius;
-}
-
-/// The spheres' shapes in the order of their primitives: solid ones first, of these those that are
-/// wide before the others; huge ones last. With `huge_only` no others.
-std::vector<std::size_t> order_spheres(const Flattening &work, bool huge_only,
-                                       KernelConfig &config) {
+constexpr double large_radius = 0.5;
+/// The lane-wise spheres' shapes in the order of their primitives: opaque ones first, of these
+/// those that are large before the others; huge ones last.
+std::vector<std::size_t> order_spheres(const Flattening &work, SceneFacts &facts) {
     const Scene &scene = work.scene;
     const Placement &placement = work.flat.placement;
     std::vector<std::size_t> order, huge;
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-        if (scene.shapes[i].kind != ShapeKind::sphere)
-            continue;
-        if (is_beside(scene.shapes[i], placement, huge_radius))
-            huge.push_back(i);
-        else if (!huge_only)
-            order.push_back(i);
-    }
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        if (test_of(scene.shapes[i], work) == ShapeTest::sphere)
+            (is_huge(scene.shapes[i], placement) ? huge : order).push_back(i);
     const auto others = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
-        return is_solid(scene, scene.shapes[i]);
+        return is_opaque(scene, scene.shapes[i]);
     });
     const auto smaller = std::stable_partition(order.begin(), others, [&](std::size_t i) {
-        return is_beside(scene.shapes[i], placement, wide_radius);
+        return is_beside(scene.shapes[i], placement, large_radius);
     });
-    config.SOLID_COUNT = static_cast<int>(others - order.begin());
-    config.WIDE_COUNT = static_cast<int>(smaller - order.begin());
-    config.HUGE_COUNT = static_cast<int>(huge.size());
+    facts.opaque_count = static_cast<int>(others - order.begin());
+    facts.large_count = static_cast<int>(smaller - order.begin());
+    facts.huge_count = static_cast<int>(huge.size());
     order.insert(order.end(), huge.begin(), huge.end());
     return order;
 }
 
-/// The spheres that every ray tests: all of them, or the huge ones.
-void flatten_lane_wise_spheres(Flattening &work, bool huge_only) {
+void flatten_lane_wise_spheres(Flattening &work) {
     FlatScene &flat = work.flat;
-    for (const std::size_t i : order_spheres(work, huge_only, flat.config)) {
+    for (const std::size_t i : order_spheres(work, flat.facts)) {
         const Shape &shape = work.scene.shapes[i];
         append_lane_wise_shape(i, work);
         flat.spheres.push_back(flatten_sphere(shape, flat.placement));
@@ -89,7 +72,7 @@ void flatten_lane_wise_spheres(Flattening &work, bool huge_only) {
         append_no_shape(work);
         flat.spheres.emplace_back();
     }
-    flat.config.SPHERE_COUNT = static_cast<int>(flat.spheres.size());
+    flat.facts.sphere_count = static_cast<int>(flat.spheres.size());
 }
 
 /// The spheres that are too many to test one by one.
@@ -97,7 +80,7 @@ void flatten_bvh_spheres(Flattening &work) {
     FlatScene &flat = work.flat;
     for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
         const Shape &shape = work.scene.shapes[i];
-        if (shape.kind != ShapeKind::sphere || work.primitive_of_shape.count(static_cast<int>(i)))
+        if (test_of(shape, work) != ShapeTest::bvh_sphere)
             continue;
         const auto id = static_cast<uint>(flat.shape_of.size());
         flat.shape_of.push_back(append_shape(shape, work));
@@ -105,7 +88,7 @@ void flatten_bvh_spheres(Flattening &work) {
         flat.spheres.push_back(s);
         flat.bvh_spheres.push_back(
             {{s.center[0], s.center[1], s.center[2]}, std::abs(s.radius), id});
-        work.primitive_of_shape[static_cast<int>(i)] = static_cast<uint>(flat.config.SPHERE_COUNT) +
+        work.primitive_of_shape[static_cast<int>(i)] = static_cast<uint>(flat.facts.sphere_count) +
                                                        static_cast<uint>(flat.planars.size()) + id;
     }
 }
@@ -128,8 +111,8 @@ HugeSphere huge_sphere(const Shape &shape, const Flattening &work) {
 
 /// What rays test of the lane-wise spheres, see SphereTest.
 void make_sphere_tests(FlatScene &flat, const Flattening &work) {
-    const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
-    const auto ordinary = spheres - static_cast<std::size_t>(flat.config.HUGE_COUNT);
+    const auto spheres = static_cast<std::size_t>(flat.facts.sphere_count);
+    const auto ordinary = spheres - static_cast<std::size_t>(flat.facts.huge_count);
     flat.sphere_tests.resize(2 * spheres);
     for (std::size_t i = 0; i < ordinary; ++i) {
         const Sphere &s = flat.spheres[i];
@@ -149,13 +132,12 @@ void make_sphere_tests(FlatScene &flat, const Flattening &work) {
 /// What rays find of the lane-wise primitives, in their order.
 void make_records(Flattening &work) {
     FlatScene &flat = work.flat;
-    const auto spheres = static_cast<std::size_t>(flat.config.SPHERE_COUNT);
+    const auto spheres = static_cast<std::size_t>(flat.facts.sphere_count);
     make_sphere_tests(flat, work);
-    bool one_sided = true;
     for (std::size_t i = 0; i < spheres + flat.planars.size(); ++i) {
         PrimitiveRecord r{};
         if (i < spheres) {
-            const bool huge = i + static_cast<std::size_t>(flat.config.HUGE_COUNT) >= spheres;
+            const bool huge = i + static_cast<std::size_t>(flat.facts.huge_count) >= spheres;
             std::copy_n(flat.spheres[i].center, 3, r.place);
             r.size = flat.spheres[i].radius;
             r.inv_size = 1 / r.size;
@@ -170,14 +152,12 @@ void make_records(Flattening &work) {
             r.size = p.distance;
             r.is_disk = p.is_disk != 0 ? CLR_NONE : 0;
             if (p.area > 0)
-                store_frame(r.frame, shape_of_primitive(work, i), flat.placement);
+                store_coordinates(r, shape_of_primitive(work, i), flat.placement);
         }
         r.materials = flat.shapes[i].materials;
         r.emitter = flat.shapes[i].emitter;
         const uint front = flat.shapes[i].materials & CLR_NO_MATERIAL;
         const uint back = flat.shapes[i].materials >> 16;
-        one_sided =
-            one_sided && (front == back || front == CLR_NO_MATERIAL || back == CLR_NO_MATERIAL);
         const uint material = front != CLR_NO_MATERIAL ? front : back;
         if (material != CLR_NO_MATERIAL)
             std::memcpy(r.material, &flat.materials[material], sizeof(r.material));
@@ -195,13 +175,7 @@ void make_records(Flattening &work) {
                                 field * sizeof(clr_real),
                             sizeof(clr_real));
         flat.records = std::move(table);
-        flat.config.RECORD_TABLE = 1;
     }
-    const bool lane_wise_only = flat.shape_of.empty();
-    // What is found at the root of a tree is not yet the material.
-    const bool has_trees = flat.config.HAS_BLEND + flat.config.HAS_NORMALMAP +
-                               flat.config.HAS_BUMPMAP > 0;
-    flat.config.MATERIALS_IN_RECORDS = one_sided && lane_wise_only && !has_trees ? 1 : 0;
 }
 
 } // namespace
@@ -212,28 +186,22 @@ void flatten_shapes(Flattening &work) {
         return std::count_if(work.scene.shapes.begin(), work.scene.shapes.end(),
                              [=](const Shape &s) { return ((s.kind == kinds) || ...); });
     };
-    const bool spheres_in_bvh = count(ShapeKind::sphere) > few_primitives;
-    const bool rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) > few_primitives;
+    work.spheres_in_bvh = count(ShapeKind::sphere) > few_primitives;
+    work.rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) > few_primitives;
 
     // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles, and
     // spheres that are too many to test one by one.
-    flatten_lane_wise_spheres(work, spheres_in_bvh);
-    flatten_planars(work, rectangles_in_bvh);
-    flatten_meshes(work, rectangles_in_bvh);
+    flatten_lane_wise_spheres(work);
+    flatten_planars(work);
+    flatten_meshes(work);
     flat.frame.prim_bvh_sphere =
         static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
-    if (spheres_in_bvh)
-        flatten_bvh_spheres(work);
+    flatten_bvh_spheres(work);
 
     make_records(work);
-    flat.config.HAS_BVH_SPHERES = flat.bvh_spheres.empty() ? 0 : 1;
-    if (flat.has_hierarchy())
-        flat.config.BRUTE_FORCE = work.options.brute_force ? 1 : 0;
 }
 
 void build_hierarchy(FlatScene &flat) {
-    if (!flat.has_hierarchy())
-        return;
     Bvh bvh = build_bvh(flat.corners, flat.bvh_spheres);
     // An empty list in place of an empty vector would keep the memory.
     flat.corners = std::vector<TriangleCorners>();

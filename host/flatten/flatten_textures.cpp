@@ -13,14 +13,8 @@ uint byte_of(const Image &image, std::size_t at, int channel) {
     return image.u8[at * static_cast<std::size_t>(channels) + static_cast<std::size_t>(source)];
 }
 
-clr_real float_of(const Image &image, std::size_t at, int channel) {
-    const int channels = image.channels;
-    const int source = channels >= 3 ? channel : 0;
-    return image.f32[at * static_cast<std::size_t>(channels) + static_cast<std::size_t>(source)];
-}
-
-/// Appends the pixels of an image, once however many textures share it; returns its offset.
-uint append_texels(const Image &image, FlatScene &flat) {
+/// Appends the pixels of an image; returns its offset. Bytes are decoded on the device.
+uint append_texels(const Image &image, TexelFormat format, FlatScene &flat) {
     const auto count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     if (image.type == PixelType::u8) {
@@ -33,20 +27,23 @@ uint append_texels(const Image &image, FlatScene &flat) {
     }
     const auto offset = static_cast<uint>(flat.texels_f32.size() / 3);
     flat.texels_f32.reserve(flat.texels_f32.size() + 3 * count);
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
+        const Rgb color = texel_color(image, i, format);
         for (int c = 0; c < 3; ++c)
-            flat.texels_f32.push_back(float_of(image, i, c));
+            flat.texels_f32.push_back(static_cast<clr_real>(color[c]));
+    }
     return offset;
 }
 
-/// The offset of an image that an earlier texture has appended, or a new one.
-uint offset_of_image(const std::shared_ptr<const Image> &image, Flattening &work) {
+/// The offset of the texels that an earlier texture has appended, or of new ones.
+uint offset_of_image(const Texture &texture, Flattening &work) {
     for (const auto &[other, index] : work.texture_index) {
         const Texture &before = work.scene.textures[static_cast<std::size_t>(other)];
-        if (before.kind == TextureKind::bitmap && before.bitmap == image)
+        if (before.kind == TextureKind::bitmap && before.bitmap == texture.bitmap &&
+            (before.bitmap->type == PixelType::u8 || before.format.half == texture.format.half))
             return work.flat.textures[index].offset;
     }
-    return append_texels(*image, work.flat);
+    return append_texels(*texture.bitmap, texture.format, work.flat);
 }
 
 TextureInfo describe(const Texture &source, uint offset) {
@@ -69,20 +66,21 @@ TextureInfo describe(const Texture &source, uint offset) {
     t.height = static_cast<uint>(image.height);
     t.offset = offset;
     t.nearest = source.filter == TextureFilter::nearest ? 1 : 0;
-    t.decode = source.raw ? 0 : 1;
+    t.decode = (source.format.raw ? CLR_DECODE_LINEAR : CLR_DECODE_SRGB) +
+               (source.format.half ? CLR_DECODE_HALF : 0u);
     t.is_number = source.is_number ? 1 : 0;
     return t;
 }
 
-/// 256 linear values, then the same through the sRGB transfer function.
-std::vector<clr_real> decode_table() {
-    std::vector<clr_real> table(512);
-    for (std::size_t i = 0; i < 256; ++i) {
-        const double value = static_cast<double>(i) / 255;
-        table[i] = static_cast<clr_real>(value);
-        table[256 + i] = static_cast<clr_real>(srgb_decode(value));
-    }
-    return table;
+/// The tables of TextureInfo::decode, one after the other.
+std::vector<clr_real> decode_tables() {
+    std::vector<clr_real> tables;
+    for (const TexelFormat format :
+         {TexelFormat{.raw = true}, TexelFormat{}, TexelFormat{.raw = true, .half = true},
+          TexelFormat{.half = true}})
+        for (const double value : decode_bytes(format))
+            tables.push_back(static_cast<clr_real>(value));
+    return tables;
 }
 
 } // namespace
@@ -106,16 +104,10 @@ uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *consta
     if (known != work.texture_index.end())
         return known->second;
     uint offset = 0;
-    if (source->kind == TextureKind::bitmap) {
-        offset = offset_of_image(source->bitmap, work);
-        (source->bitmap->type == PixelType::u8 ? flat.config.HAS_BITMAPS_U8
-                                               : flat.config.HAS_BITMAPS_F32) = 1;
-    } else {
-        flat.config.HAS_CHECKERBOARDS = 1;
-    }
-    flat.config.HAS_UVS = 1;
+    if (source->kind == TextureKind::bitmap)
+        offset = offset_of_image(*source, work);
     if (flat.decode.empty())
-        flat.decode = decode_table();
+        flat.decode = decode_tables();
     const auto index = static_cast<uint>(flat.textures.size());
     flat.textures.push_back(describe(*source, offset));
     work.texture_index[texture] = index;

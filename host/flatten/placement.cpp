@@ -70,12 +70,18 @@ std::vector<Part> parts_of(const Scene &scene, const std::vector<Box> &boxes) {
     for (const Whole &whole : wholes) {
         const double share = whole.shape->emitter == none ? 1 : share_of_emitters;
         const double weight = share / std::max(whole.size, least);
-        // A sphere's radius is a cube root, which is not rounded alike at every scale: its center
-        // does not go by its box.
-        if (whole.shape->kind == ShapeKind::mesh)
+        switch (whole.shape->kind) {
+        case ShapeKind::mesh:
             add_mesh(*whole.shape, weight, parts);
-        else
+            break;
+        case ShapeKind::sphere:
+        case ShapeKind::rectangle:
+        case ShapeKind::disk:
+            // A sphere's radius is a cube root, which is not rounded alike at every scale: its
+            // center does not go by its box.
             parts.push_back({glm::dvec3(whole.shape->to_world[3]), whole.size, weight});
+            break;
+        }
     }
     return parts;
 }

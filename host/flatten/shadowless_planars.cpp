@@ -15,8 +15,34 @@ double largest(const glm::dvec3 &v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+glm::dvec3 placed(const Shape &shape, const glm::dvec3 &position) {
+    return {shape.to_world * glm::dvec4(position, 1)};
+}
+
+/// The shape that alone shines, but for a constant environment, which is not sampled; or none.
+int sole_light(const Scene &scene) {
+    int sole = none;
+    for (const Emitter &emitter : scene.emitters) {
+        switch (emitter.kind) {
+        case EmitterKind::constant:
+            break;
+        case EmitterKind::point:
+        case EmitterKind::envmap:
+            return none;
+        case EmitterKind::area:
+            if (sole != none)
+                return none;
+            sole = emitter.shape;
+            break;
+        }
+    }
+    return sole;
+}
+
+} // namespace
+
 /// Whether what has been added reaches to either side of a plane.
-class Sides {
+class ShadowlessPlanars::Sides {
 public:
     Sides(const Shape &planar, double touching)
         : normal_(glm::normalize(
@@ -43,25 +69,6 @@ private:
     bool below_ = false, above_ = false;
 };
 
-glm::dvec3 placed(const Shape &shape, const glm::dvec3 &position) {
-    return {shape.to_world * glm::dvec4(position, 1)};
-}
-
-/// The shape that alone shines, but for a constant environment, which is not sampled; or none.
-int sole_light(const Scene &scene) {
-    int sole = none;
-    for (const Emitter &emitter : scene.emitters) {
-        if (emitter.kind == EmitterKind::constant)
-            continue;
-        if (sole != none || emitter.kind != EmitterKind::area)
-            return none;
-        sole = emitter.shape;
-    }
-    return sole;
-}
-
-} // namespace
-
 ShadowlessPlanars::ShadowlessPlanars(const Scene &scene, double touching)
     : scene_(scene), touching_(touching), sole_light_(sole_light(scene)) {
     has_map_ =
@@ -72,17 +79,27 @@ ShadowlessPlanars::ShadowlessPlanars(const Scene &scene, double touching)
     for (const Shape &shape : scene.shapes) {
         if (shape.kind != ShapeKind::mesh || boxes_.count(shape.mesh.get()) != 0)
             continue;
-        glm::dvec3 low(std::numeric_limits<double>::infinity());
-        glm::dvec3 high = -low;
-        for (const glm::dvec3 &position : shape.mesh->positions) {
-            low = glm::min(low, position);
-            high = glm::max(high, position);
-        }
-        auto &corners = boxes_[shape.mesh.get()];
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            corners[i] = {(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
-                          (i & 4) != 0 ? high.z : low.z};
+        Box box;
+        for (const glm::dvec3 &position : shape.mesh->positions)
+            box.add(position);
+        boxes_[shape.mesh.get()] = box;
     }
+}
+
+void ShadowlessPlanars::add_mesh(const Shape &shape, Sides &sides) const {
+    const Box &box = boxes_.at(shape.mesh.get());
+    if (box.empty())
+        return;
+    Sides with_box = sides;
+    for (const glm::dvec3 &corner : box.corners())
+        with_box.add(placed(shape, corner));
+    if (!with_box.both()) {
+        sides = with_box;
+        return;
+    }
+    // The box may reach farther than the mesh.
+    for (const glm::dvec3 &position : shape.mesh->positions)
+        sides.add(placed(shape, position));
 }
 
 bool ShadowlessPlanars::is_outer(const Shape &planar) const {
@@ -91,23 +108,19 @@ bool ShadowlessPlanars::is_outer(const Shape &planar) const {
         if (emitter.kind == EmitterKind::point)
             sides.add(emitter.position);
     for (const Shape &shape : scene_.shapes) {
-        const glm::dvec3 center(shape.to_world[3]);
-        if (shape.kind == ShapeKind::sphere) {
-            sides.add(center, glm::length(glm::dvec3(shape.to_world[0])));
-        } else if (shape.kind != ShapeKind::mesh) {
-            // A disk lies within the rectangle around it.
+        switch (shape.kind) {
+        case ShapeKind::sphere:
+            sides.add(glm::dvec3(shape.to_world[3]), glm::length(glm::dvec3(shape.to_world[0])));
+            break;
+        case ShapeKind::rectangle:
+        case ShapeKind::disk: // which lies within the rectangle around it
             for (const double u : {-1.0, 1.0})
                 for (const double v : {-1.0, 1.0})
                     sides.add(placed(shape, {u, v, 0}));
-        } else if (!shape.mesh->positions.empty()) {
-            Sides with_box = sides;
-            for (const glm::dvec3 &corner : boxes_.at(shape.mesh.get()))
-                with_box.add(placed(shape, corner));
-            if (with_box.both()) // the box may reach farther than the mesh
-                for (const glm::dvec3 &position : shape.mesh->positions)
-                    sides.add(placed(shape, position));
-            else
-                sides = with_box;
+            break;
+        case ShapeKind::mesh:
+            add_mesh(shape, sides);
+            break;
         }
         if (sides.both())
             return false;

@@ -1,10 +1,9 @@
 #pragma once
 /// Walls, floors and ceilings cast no shadows into their own room.
 
-#include "scene/scene.h"
+#include "scene/shape_bounds.h"
 #include "shared/shared_types.h"
 
-#include <array>
 #include <cstddef>
 #include <map>
 
@@ -22,13 +21,16 @@ public:
     [[nodiscard]] bool contains(std::size_t shape) const;
 
 private:
+    class Sides;
+
     [[nodiscard]] bool is_outer(const Shape &planar) const;
+    void add_mesh(const Shape &shape, Sides &sides) const;
 
     const Scene &scene_;
     double touching_;
     bool has_map_ = false;
     int sole_light_ = none;
-    std::map<const Mesh *, std::array<glm::dvec3, 8>> boxes_; ///< their corners, in their own space
+    std::map<const Mesh *, Box> boxes_; ///< in their own space
 };
 
 } // namespace clrender::inline CLR_PRECISION

@@ -2,6 +2,39 @@
 
 namespace clrender::inline CLR_PRECISION {
 
+namespace {
+
+/// From this radius on, in the renderer's units, a rounding of the radius is larger than what is
+/// seen of the scene.
+constexpr double huge_radius = 64;
+
+} // namespace
+
+bool is_beside(const Shape &sphere, const Placement &placement, double least_radius) {
+    const double radius = sphere_radius(sphere) * placement.scale;
+    return radius >= least_radius &&
+           glm::length(placement.exact(glm::dvec3(sphere.to_world[3]))) < 2 * radius;
+}
+
+bool is_huge(const Shape &sphere, const Placement &placement) {
+    return is_beside(sphere, placement, huge_radius);
+}
+
+ShapeTest test_of(const Shape &shape, const Flattening &work) {
+    switch (shape.kind) {
+    case ShapeKind::sphere:
+        return work.spheres_in_bvh && !is_huge(shape, work.flat.placement) ? ShapeTest::bvh_sphere
+                                                                           : ShapeTest::sphere;
+    case ShapeKind::rectangle:
+        return work.rectangles_in_bvh ? ShapeTest::triangles : ShapeTest::planar;
+    case ShapeKind::disk:
+        return ShapeTest::planar;
+    case ShapeKind::mesh:
+        break;
+    }
+    return ShapeTest::triangles;
+}
+
 bool is_inverted(const Shape &shape) {
     const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
     return shape.flip_normals != mirrored;
@@ -11,13 +44,14 @@ uint append_shape(const Shape &shape, Flattening &work) {
     FlatScene &flat = work.flat;
     flat.shapes.push_back({work.sides_of_bsdf.at(shape.bsdf),
                            shape.emitter == none ? CLR_NONE : static_cast<uint>(shape.emitter)});
-    if (flat.config.HAS_UVS != 0) {
+    if (work.needs_uvs()) {
         glm::dmat3 to_local{1.0};
         if (shape.kind == ShapeKind::sphere)
             to_local = glm::inverse(glm::dmat3(shape.to_world)) * sphere_radius(shape);
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 3; ++column)
-                flat.shape_frames.push_back(static_cast<clr_real>(to_local[column][row]));
+        const glm::dmat3 axes = glm::transpose(to_local);
+        flat.shape_frames.emplace_back();
+        for (int k = 0; k < 3; ++k)
+            store(flat.shape_frames.back().axis[k], axes[k]);
     }
     return static_cast<uint>(flat.shapes.size() - 1);
 }
@@ -31,8 +65,8 @@ void append_lane_wise_shape(std::size_t shape, Flattening &work) {
 void append_no_shape(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
-    if (flat.config.HAS_UVS != 0)
-        flat.shape_frames.insert(flat.shape_frames.end(), 9, 0.0f);
+    if (work.needs_uvs())
+        flat.shape_frames.emplace_back();
     work.lane_wise_shapes.push_back(none);
 }
 

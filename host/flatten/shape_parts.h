@@ -5,10 +5,21 @@
 
 namespace clrender::inline CLR_PRECISION {
 
-/// Rectangles and disks that every ray tests, and, with `rectangles_in_bvh`, disks alone.
-void flatten_planars(Flattening &work, bool rectangles_in_bvh);
-/// Meshes, and, with `rectangles_in_bvh`, rectangles.
-void flatten_meshes(Flattening &work, bool rectangles_in_bvh);
+/// What rays are tested against.
+enum class ShapeTest {
+    sphere,     ///< every ray, lane-wise
+    bvh_sphere, ///< in the BVH
+    planar,     ///< every ray, lane-wise
+    triangles,  ///< in the BVH
+};
+
+/// How a shape of the scene is tested.
+ShapeTest test_of(const Shape &shape, const Flattening &work);
+
+/// The planars that every ray tests.
+void flatten_planars(Flattening &work);
+/// What becomes triangles.
+void flatten_meshes(Flattening &work);
 
 /// The shape's entry among the shape infos, with the frame that spheres need for their (u, v).
 uint append_shape(const Shape &shape, Flattening &work);
@@ -20,9 +31,14 @@ void append_no_shape(Flattening &work);
 /// The shape of a lane-wise primitive that has one.
 const Shape &shape_of_primitive(const Flattening &work, std::size_t primitive);
 
+/// True if the sphere is large and its surface no farther from the origin than its radius.
+bool is_beside(const Shape &sphere, const Placement &placement, double least_radius);
+/// The same of one that is tested by its curvature (sphere.clh), and in no BVH.
+bool is_huge(const Shape &sphere, const Placement &placement);
+
 /// True where the normal points the other way than the shape's own.
 bool is_inverted(const Shape &shape);
-/// PrimitiveRecord::frame of a rectangle or disk.
-void store_frame(clr_real (&out)[8], const Shape &shape, const Placement &placement);
+/// PrimitiveRecord::to_a and to_b of a rectangle or disk.
+void store_coordinates(PrimitiveRecord &out, const Shape &shape, const Placement &placement);
 
 } // namespace clrender::inline CLR_PRECISION

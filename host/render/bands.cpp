@@ -1,7 +1,5 @@
 #include "bands.h"
 
-#include "shared/launch_data.h"
-
 #include <algorithm>
 
 namespace clrender {
@@ -26,7 +24,7 @@ Band band_of(const PictureTiles &tiles, std::size_t first, std::size_t end) {
 } // namespace
 
 std::size_t band_bytes(const PictureTiles &tiles, const Band &band) {
-    return (band.end_row - band.first_row) * tiles.width * sizeof(FilmPixel) +
+    return (band.end_row - band.first_row) * tiles.row_bytes() +
            (band.tiles.end_row - band.tiles.first_row) * tiles.columns() * sizeof(ItemCounters);
 }
 
@@ -36,7 +34,7 @@ std::vector<Band> cut_into_bands(const PictureTiles &tiles, std::size_t bytes,
     if (tile_rows == 0) {
         if (band_bytes(tiles, band_of(tiles, 0, rows)) <= bytes)
             return {band_of(tiles, 0, rows)};
-        const std::size_t pixel_row = tiles.width * sizeof(FilmPixel);
+        const std::size_t pixel_row = tiles.row_bytes();
         const std::size_t tile_row =
             pixel_row * tiles.side + tiles.columns() * sizeof(ItemCounters);
         const std::size_t borders = 3 * tiles.border * pixel_row;

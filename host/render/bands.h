@@ -3,6 +3,7 @@
 /// one band only.
 
 #include "launch_plan.h"
+#include "shared/launch_data.h"
 
 #include <cstddef>
 #include <vector>
@@ -14,10 +15,15 @@ struct PictureTiles {
     std::size_t width = 0, height = 0; ///< of the picture, pixels
     std::size_t side = 1;              ///< of a tile, pixels
     std::size_t border = 0;            ///< pixels beyond its tile that a sample reaches
+    bool measured = false;             ///< the variance is wanted: the film has MeasuredPixels
 
     [[nodiscard]] std::size_t columns() const { return (width + side - 1) / side; }
     [[nodiscard]] std::size_t rows() const { return (height + side - 1) / side; }
     [[nodiscard]] std::size_t pixels() const { return width * height; }
+    /// Of a row of the device's film.
+    [[nodiscard]] std::size_t row_bytes() const {
+        return width * (measured ? sizeof(MeasuredPixel) : sizeof(FilmPixel));
+    }
 };
 
 /// Whole rows of tiles, and the rows of pixels [first_row, end_row) whose sums are needed for them:

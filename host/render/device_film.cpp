@@ -15,10 +15,9 @@ std::size_t tile_count(const Band &band) {
 DeviceFilm::DeviceFilm(const cl::Context &context, const cl::CommandQueue &queue,
                        const PictureTiles &tiles, const std::vector<Band> &bands,
                        const ControlLayout &control)
-    : queue_(queue), tiles_(tiles), row_bytes_(tiles.width * sizeof(FilmPixel)),
-      control_bytes_(control.bytes()) {
+    : queue_(queue), tiles_(tiles), control_bytes_(control.bytes()) {
     for (const Band &band : bands) {
-        film_bytes_ = std::max(film_bytes_, (band.end_row - band.first_row) * row_bytes_);
+        film_bytes_ = std::max(film_bytes_, (band.end_row - band.first_row) * tiles.row_bytes());
         counter_bytes_ = std::max(counter_bytes_, tile_count(band) * sizeof(ItemCounters));
     }
     with_device("making the film", [&] {
@@ -31,16 +30,17 @@ DeviceFilm::DeviceFilm(const cl::Context &context, const cl::CommandQueue &queue
 }
 
 void DeviceFilm::begin(const Band &band) {
+    const std::size_t row = tiles_.row_bytes();
     // A band has more rows of its own than it shares with the next one, so the rows that are moved
     // do not overlap their new place.
     const std::size_t kept =
-        kept_end_row_ > band.first_row ? (kept_end_row_ - band.first_row) * row_bytes_ : 0;
+        kept_end_row_ > band.first_row ? (kept_end_row_ - band.first_row) * row : 0;
     with_device("clearing the film", [&] {
         if (kept > 0)
-            queue_.enqueueCopyBuffer(film_, film_, (band.first_row - band_.first_row) * row_bytes_,
-                                     0, kept);
+            queue_.enqueueCopyBuffer(film_, film_, (band.first_row - band_.first_row) * row, 0,
+                                     kept);
         queue_.enqueueFillBuffer(film_, cl_uint{0}, kept,
-                                 (band.end_row - band.first_row) * row_bytes_ - kept);
+                                 (band.end_row - band.first_row) * row - kept);
         queue_.enqueueFillBuffer(counters_, cl_uint{0}, 0, tile_count(band) * sizeof(ItemCounters));
         queue_.finish();
     });
@@ -67,11 +67,29 @@ FilmWindow DeviceFilm::window() const {
             static_cast<cl_uint>(band_.tiles.first_row * band_.tiles.columns)};
 }
 
-void DeviceFilm::read_rows(std::size_t first_row, std::size_t count, FilmPixel *pixels) const {
-    with_device("reading the film", [&] {
-        queue_.enqueueReadBuffer(film_, CL_TRUE, (first_row - band_.first_row) * row_bytes_,
-                                 count * row_bytes_, pixels);
-    });
+void DeviceFilm::read_rows(std::size_t first_row, std::size_t count, Film &film) const {
+    const std::size_t pixels = count * tiles_.width;
+    film.width = static_cast<int>(tiles_.width);
+    film.height = static_cast<int>(count);
+    film.pixels.resize(pixels);
+    const auto read = [&](void *to) {
+        with_device("reading the film", [&] {
+            queue_.enqueueReadBuffer(film_, CL_TRUE,
+                                     (first_row - band_.first_row) * tiles_.row_bytes(),
+                                     count * tiles_.row_bytes(), to);
+        });
+    };
+    if (!tiles_.measured) {
+        read(film.pixels.data());
+        return;
+    }
+    std::vector<MeasuredPixel> measured(pixels);
+    read(measured.data());
+    film.moments.resize(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        film.pixels[i] = measured[i].sums;
+        film.moments[i] = measured[i].moments;
+    }
 }
 
 std::vector<ItemCounters> DeviceFilm::read_counters() const {

@@ -4,6 +4,7 @@
 #include "bands.h"
 #include "device/cl_context.h"
 #include "film/control.h"
+#include "film/film.h"
 #include "shared/launch_data.h"
 
 #include <vector>
@@ -34,8 +35,9 @@ public:
     cl_uint bind(cl::Kernel &kernel, cl_uint index) const;
     [[nodiscard]] FilmWindow window() const;
 
-    /// The sums of `count` rows of pixels, counted over the whole picture.
-    void read_rows(std::size_t first_row, std::size_t count, FilmPixel *pixels) const;
+    /// The sums of `count` rows of pixels, counted over the whole picture, and their moments where
+    /// the variance is wanted.
+    void read_rows(std::size_t first_row, std::size_t count, Film &film) const;
     /// The counters of the band's tiles.
     [[nodiscard]] std::vector<ItemCounters> read_counters() const;
 
@@ -49,7 +51,6 @@ public:
 private:
     cl::CommandQueue queue_;
     PictureTiles tiles_;
-    std::size_t row_bytes_;
     std::size_t film_bytes_ = 0, counter_bytes_ = 0, control_bytes_ = 0;
     cl::Buffer film_, counters_, control_;
     Band band_;

@@ -15,10 +15,13 @@ namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
-/// Sides of a work-item's tile: enough paths to keep the lanes of a CPU full; on a GPU one pixel,
-/// unless samples reach into their neighbours.
+/// Sides of a work-item's tile: enough paths to keep the lanes of a CPU full; on a GPU one pixel.
 constexpr int cpu_tile = CLR_LEAST_TILE;
 constexpr int gpu_tile = 1;
+
+/// Children of a node tested at once: as many as a vector has lanes, or as few as leave registers.
+constexpr int cpu_bvh_step = 8;
+constexpr int gpu_bvh_step = 4;
 
 /// Work-items of a work-group, fixed: PoCL compiles anew for each size.
 constexpr std::size_t cpu_group = 1;
@@ -74,18 +77,21 @@ void launch_nothing(const cl::Context &context, const cl::CommandQueue &queue, c
 
 } // namespace
 
-int tile_of(const DeviceEntry &entry, const KernelConfig &config) {
-    return entry.is_cpu || config.FILTER == 3 ? cpu_tile : gpu_tile;
+int bvh_step_for(const DeviceEntry &entry) {
+    return entry.is_cpu ? cpu_bvh_step : gpu_bvh_step;
 }
 
-PictureTiles tiles_of(const FlatScene &flat) {
-    return {flat.frame.width, flat.frame.height, static_cast<std::size_t>(flat.config.TILE),
-            static_cast<std::size_t>(flat.config.BORDER)};
+int tile_for(const DeviceEntry &entry) {
+    return entry.is_cpu ? cpu_tile : gpu_tile;
 }
 
-std::vector<Band> bands_of(const DeviceEntry &entry, const FlatScene &flat,
+PictureTiles tiles_of(const FrameData &frame, const KernelConfig &config) {
+    return {frame.width, frame.height, static_cast<std::size_t>(config.TILE),
+            static_cast<std::size_t>(config.BORDER), config.VARIANCE != 0};
+}
+
+std::vector<Band> bands_of(const DeviceEntry &entry, const PictureTiles &tiles,
                            const RenderOptions &options) {
-    const PictureTiles tiles = tiles_of(flat);
     const auto rows = static_cast<std::size_t>(options.band_rows);
     const std::size_t limit = std::min(entry.max_allocation_bytes, entry.memory_bytes / film_share);
     std::vector<Band> bands = cut_into_bands(tiles, limit, rows);
@@ -94,11 +100,13 @@ std::vector<Band> bands_of(const DeviceEntry &entry, const FlatScene &flat,
     return bands;
 }
 
-PathTracer::PathTracer(const DeviceEntry &entry, FlatScene &flat, const RenderOptions &options)
-    : entry_(entry), flat_(flat), options_(options), tiles_(tiles_of(flat)),
-      bands_(bands_of(entry, flat, options)), control_{tiles_.width, tiles_.height, tiles_.side,
-                                                       flat.frame.control_group},
-      group_(flat.config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group),
+PathTracer::PathTracer(const DeviceEntry &entry, FlatScene &flat, const KernelConfig &config,
+                       const RenderOptions &options)
+    : entry_(entry), flat_(flat), config_(config), options_(options),
+      tiles_(tiles_of(flat.frame, config)),
+      bands_(bands_of(entry, tiles_, options)), control_{tiles_.width, tiles_.height, tiles_.side,
+                                                         flat.frame.control_group},
+      group_(config.LANES == 1 && !entry.is_cpu ? gpu_group : cpu_group),
       pace_(tiles_.columns(), tiles_.rows(),
             round_up(static_cast<std::size_t>(entry.compute_units) *
                          (entry.is_cpu ? 1 : gpu_items_per_unit),
@@ -115,7 +123,7 @@ void PathTracer::start_compiling() {
                                                   ? embedded_kernel_sources()
                                                   : read_kernel_sources(options_.kernel_dir);
     const auto build = [this, text = join_sources(sources, "path_trace.cl"),
-                        build_options = flat_.config.build_options()] {
+                        build_options = config_.build_options()] {
         return build_kernel(
             context_, entry_, text, "path_trace", build_options,
             [&](cl::Kernel &kernel) { launch_nothing(context_, queue_, kernel, group_); });
@@ -126,7 +134,7 @@ void PathTracer::start_compiling() {
 }
 
 void PathTracer::compile(RenderStats &stats) {
-    stats.kernel_features = flat_.config.describe();
+    stats.kernel_features = config_.describe();
     log::detail("kernel: " + stats.kernel_features);
     const BuiltKernel built = compiling_.get();
     kernel_ = built.kernel;
@@ -225,7 +233,7 @@ PathTracer::Ended PathTracer::run(LaunchPlan &plan, bool may_be_slow) {
 LaunchPlan PathTracer::plan_of(const Band &band, int spp, int first_block) {
     return {band.tiles,
             spp,
-            flat_.config.FILTER == 3,
+            config_.FILTER == CLR_FILTER_SPLATTED,
             pace_,
             static_cast<std::size_t>(options_.tile),
             options_.batch,
@@ -329,7 +337,7 @@ void PathTracer::add_counters(RenderStats &stats) const {
 void PathTracer::complete_profile(const RenderStats &stats) {
     Profile &profile = *options_.profile;
     profile.device = stats.device;
-    profile.config = flat_.config;
+    profile.config = config_;
     profile.uploaded_bytes = static_cast<double>(scene_->bytes());
     profile.device_bytes = static_cast<double>(stats.device_bytes);
     profile.downloaded_bytes += static_cast<double>(film_->bytes());

@@ -2,9 +2,10 @@
 /// The device's side of a render: the film there, and the launches that fill it.
 
 #include "bands.h"
-#include "device/device_scene.h"
+#include "config/kernel_config.h"
 #include "device/kernel_program.h"
 #include "device_film.h"
+#include "device_scene.h"
 #include "flatten/flat_scene.h"
 #include "launch_plan.h"
 #include "picture.h"
@@ -18,22 +19,25 @@
 
 namespace clrender::inline CLR_PRECISION {
 
-/// The side of a work-item's square. Splatted filters need one that reaches no further than the
-/// next.
-int tile_of(const DeviceEntry &entry, const KernelConfig &config);
+/// How many children of a node the device tests at once (BVH_STEP).
+int bvh_step_for(const DeviceEntry &entry);
+
+/// The side of a work-item's square that suits the device, where filters are not splatted.
+int tile_for(const DeviceEntry &entry);
 
 /// The tiles of the picture that a kernel of this kind renders.
-PictureTiles tiles_of(const FlatScene &flat);
+PictureTiles tiles_of(const FrameData &frame, const KernelConfig &config);
 
 /// The bands that the device renders the picture in.
-std::vector<Band> bands_of(const DeviceEntry &entry, const FlatScene &flat,
+std::vector<Band> bands_of(const DeviceEntry &entry, const PictureTiles &tiles,
                            const RenderOptions &options);
 
 /// One render: the device's side of the film and the launches that fill it.
 class PathTracer {
 public:
-    /// Frees the arrays of `flat` as they are uploaded; its frame and its configuration stay.
-    PathTracer(const DeviceEntry &entry, FlatScene &flat, const RenderOptions &options);
+    /// Frees the arrays of `flat` as they are uploaded; its frame stays.
+    PathTracer(const DeviceEntry &entry, FlatScene &flat, const KernelConfig &config,
+               const RenderOptions &options);
 
     /// Starts to compile, on a thread of its own.
     void start_compiling();
@@ -75,6 +79,7 @@ private:
 
     const DeviceEntry &entry_;
     FlatScene &flat_;
+    const KernelConfig &config_;
     const RenderOptions &options_;
     PictureTiles tiles_;
     std::vector<Band> bands_;

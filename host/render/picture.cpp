@@ -1,8 +1,11 @@
 #include "picture.h"
 
+#include "film/film_sums.h"
+
 #include <algorithm>
 #include <limits>
 #include <tbb/parallel_for.h>
+#include <type_traits>
 
 namespace clrender {
 
@@ -35,6 +38,24 @@ void copy_pixels(Image &part, std::size_t part_row, std::size_t first, std::size
               pixels_of(image, row, first));
 }
 
+/// The rows [first, end) of a film.
+Film part_of(const Film &film, std::size_t first, std::size_t end) {
+    const auto rows = [&](const auto &pixels) {
+        const auto at = [&](std::size_t row) {
+            return pixels.begin() +
+                   static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(film.width));
+        };
+        return pixels.empty() ? pixels : std::decay_t<decltype(pixels)>(at(first), at(end));
+    };
+    Film part;
+    part.width = film.width;
+    part.height = static_cast<int>(end - first);
+    part.exponent = film.exponent;
+    part.pixels = rows(film.pixels);
+    part.moments = rows(film.moments);
+    return part;
+}
+
 } // namespace
 
 std::size_t channels_of(PixelFormat format) {
@@ -53,9 +74,10 @@ std::size_t channels_of(PixelFormat format) {
     return 4;
 }
 
-Picture::Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent)
-    : image(black(tiles, channels_of(format))), tiles_(tiles), format_(format), exponent_(exponent),
-      rows_(tiles.rows()) {
+Picture::Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent,
+                 const ControlLayout &control)
+    : image(black(tiles, channels_of(format))), control_means(3 * control.pixels()), tiles_(tiles),
+      format_(format), exponent_(exponent), control_(control), rows_(tiles.rows()) {
     if (layers.variance)
         variance = black(tiles, channels_of(format));
     image.color_space = variance.color_space = color_space(format);
@@ -69,34 +91,26 @@ void Picture::take(const DeviceFilm &film, const Band &band, const LaunchPlan &p
     const std::size_t own_row = band.tiles.first_row * tiles_.side;
     const std::size_t first_row = own_row - std::min(tiles_.border, own_row);
     const std::size_t end_row = std::min(band.tiles.end_row * tiles_.side, tiles_.height);
-    const std::size_t step =
-        std::max<std::size_t>(chunk_bytes / (tiles_.width * sizeof(FilmPixel)), 1);
+    const std::size_t step = std::max<std::size_t>(chunk_bytes / tiles_.row_bytes(), 1);
     const std::size_t margin = tiles_.border;
     // The next band's samples may still reach the last rows.
     const std::size_t final_row =
         plan.done() && end_row < tiles_.height ? end_row - margin : end_row;
-    std::vector<FilmPixel> pixels;
+    Film rows;
+    rows.exponent = exponent_;
     for (std::size_t first = first_row; first < end_row; first += step) {
         const std::size_t end = std::min(first + step, end_row);
         const std::size_t film_row = std::max(first - std::min(margin, first), band.first_row);
         const std::size_t film_end = std::min(end + margin, band.end_row);
-        pixels.resize((film_end - film_row) * tiles_.width);
-        film.read_rows(film_row, film_end - film_row, pixels.data());
+        film.read_rows(film_row, film_end - film_row, rows);
         tbb::parallel_for(first, end, grain_rows, [&](std::size_t row) {
             const std::size_t last = std::min(row + grain_rows, end);
             const std::size_t from = std::max(row - std::min(margin, row), film_row);
             const std::size_t to = std::min(last + margin, film_end);
-            Film part;
-            part.width = static_cast<int>(tiles_.width);
-            part.height = static_cast<int>(to - from);
-            part.exponent = exponent_;
-            const auto at = [&](std::size_t r) {
-                return pixels.begin() + static_cast<std::ptrdiff_t>((r - film_row) * tiles_.width);
-            };
-            part.pixels.assign(at(from), at(to));
-            take_rows(part, from, row, last, band, plan);
+            take_rows(part_of(rows, from - film_row, to - film_row), from, row, last, band, plan);
         });
-        count_clamped(pixels, film_row, std::min(end, final_row));
+        take_control_means(rows, film_row, first, end);
+        count_clamped(rows.pixels, film_row, std::min(end, final_row));
     }
     mark(band, plan);
 }
@@ -125,6 +139,20 @@ void Picture::take_rows(const Film &film, std::size_t film_row, std::size_t firs
             if (plan.has_samples(column, tile_row))
                 take(column * tiles_.side, std::min((column + 1) * tiles_.side, tiles_.width));
     }
+}
+
+/// Takes over the means of the control tiles' pixels in the rows [first, end) from a part of the
+/// film that begins with `film_row`.
+void Picture::take_control_means(const Film &film, std::size_t film_row, std::size_t first,
+                                 std::size_t end) {
+    const FilmUnits units(exponent_);
+    for (std::size_t i = 0; i < control_.count(); ++i)
+        for_each_control_pixel(
+            control_, i, first, end, [&](std::size_t pixel, std::size_t x, std::size_t y) {
+                const PixelSums sums(film.pixels[(y - film_row) * tiles_.width + x], units);
+                for (int c = 0; c < 3; ++c)
+                    control_means[3 * pixel + static_cast<std::size_t>(c)] = sums.mean(c);
+            });
 }
 
 /// Counts the rows up to `end` that have not been counted yet; `pixels` begin with row `film_row`.

@@ -3,6 +3,7 @@
 
 #include "bands.h"
 #include "device_film.h"
+#include "film/control.h"
 #include "film/film.h"
 #include "scene/scene.h"
 
@@ -21,7 +22,8 @@ public:
     };
 
     /// Black, in the channels of `format`; with the layers that are wanted. `exponent`: as Film.
-    Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent);
+    Picture(const PictureTiles &tiles, PixelFormat format, Layers layers, int exponent,
+            const ControlLayout &control);
 
     /// Takes over the band that is in `film`, as far as the launches of `plan` have got: the pixels
     /// of tiles without samples stay as they are, and those of the band above that this one reaches
@@ -44,6 +46,7 @@ public:
     Image variance; ///< were the samples independent; empty where it is not wanted
     Image samples;  ///< of each pixel, one channel; empty where it is not wanted
     Clamped clamped;
+    std::vector<double> control_means; ///< as ControlSums
 
 private:
     /// Which tiles of a row of them have samples: all, or those marked, or none.
@@ -59,6 +62,8 @@ private:
 
     void take_rows(const Film &film, std::size_t film_row, std::size_t first, std::size_t end,
                    const Band &band, const LaunchPlan &plan);
+    void take_control_means(const Film &film, std::size_t film_row, std::size_t first,
+                            std::size_t end);
     void count_clamped(const std::vector<FilmPixel> &pixels, std::size_t film_row, std::size_t end);
     void mark(const Band &band, const LaunchPlan &plan);
     std::size_t fill_row(std::size_t row, const Tiles &tiles);
@@ -66,6 +71,7 @@ private:
     PictureTiles tiles_;
     PixelFormat format_;
     int exponent_;
+    ControlLayout control_;
     std::vector<Tiles> rows_; ///< of tiles
 };
 

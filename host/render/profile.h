@@ -1,7 +1,7 @@
 #pragma once
 /// What --profile measures of a render, and the figures that follow from it.
 
-#include "device/kernel_config.h"
+#include "config/kernel_config.h"
 #include "shared/profile_data.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 #include "render_at_precision.h"
 
-#include "device/device_scene.h"
 #include "film/film_blocks.h"
+#include "flatten/config_of.h"
 #include "flatten/flat_scene.h"
 #include "log.h"
 #include "memory_need.h"
@@ -36,23 +36,31 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-FlattenOptions flatten_options(const DeviceEntry &entry, const RenderOptions &options) {
-    FlattenOptions flatten_options;
-    flatten_options.brute_force = options.brute_force;
-    flatten_options.pixel_centers = options.pixel_centers;
-    flatten_options.splat_filters = entry.is_cpu;
-    flatten_options.strategy = options.strategy;
-    flatten_options.light_samples = options.light_samples;
-    flatten_options.generality = options.generality;
-    return flatten_options;
+/// A double-precision kernel has one lane.
+int lanes_for(const DeviceEntry &entry, const RenderOptions &options) {
+    if (CLR_DOUBLE != 0)
+        return 1;
+    return options.lanes > 0 ? options.lanes : natural_lanes(entry);
+}
+
+KernelConfig configure(const FlatScene &flat, const DeviceEntry &entry,
+                       const RenderOptions &options) {
+    ConfigOptions how;
+    how.lanes = lanes_for(entry, options);
+    how.tile = tile_for(entry);
+    how.splat_filters = entry.is_cpu;
+    how.bvh_step = bvh_step_for(entry);
+    how.profile = options.profile != nullptr;
+    how.variance = options.with_variance;
+    return config_of(flat, options.sampling, how);
 }
 
 /// The group of tiles that share a control tile; independent samples need none.
-std::size_t control_group_of(const FlatScene &flat, const RenderOptions &options) {
-    if (!options.with_variance || options.independent_sampler)
+std::size_t control_group_of(const FlatScene &flat, const KernelConfig &config) {
+    if (config.VARIANCE == 0 || config.SAMPLER == CLR_SAMPLER_INDEPENDENT)
         return 0;
     return choose_control_group(
-        {flat.frame.width, flat.frame.height, static_cast<std::size_t>(flat.config.TILE)});
+        {flat.frame.width, flat.frame.height, static_cast<std::size_t>(config.TILE)});
 }
 
 /// Values of each pixel: of the picture, and of the layers that are wanted.
@@ -60,14 +68,15 @@ std::size_t values_of(PixelFormat format, const RenderOptions &options) {
     return channels_of(format) * (options.with_variance ? 2 : 1) + (options.with_samples ? 1 : 0);
 }
 
-/// To be asked when the hierarchy is built and the configuration complete. `values` of each pixel.
-MemoryNeed need_of(const FlatScene &flat, const DeviceEntry &entry, const RenderOptions &options,
-                   std::size_t values, bool to_compile) {
-    const PictureTiles tiles = tiles_of(flat);
+/// To be asked when the hierarchy is built. `values` of each pixel.
+MemoryNeed need_of(const FlatScene &flat, const KernelConfig &config, const DeviceEntry &entry,
+                   const RenderOptions &options, std::size_t values, bool to_compile) {
+    const PictureTiles tiles = tiles_of(flat.frame, config);
     const ControlLayout control{tiles.width, tiles.height, tiles.side, flat.frame.control_group};
-    return memory_need(entry, {flat.bytes(), largest_array_bytes(flat)},
-                       {band_bytes(tiles, bands_of(entry, flat, options).front()), control.bytes()},
-                       tiles.pixels() * values * sizeof(float), to_compile);
+    return memory_need(
+        entry, {flat.bytes(), largest_array_bytes(flat)},
+        {band_bytes(tiles, bands_of(entry, tiles, options).front()), control.bytes()},
+        tiles.pixels() * values * sizeof(float), to_compile);
 }
 
 void warn_of_samples(const RenderStats &stats) {
@@ -108,7 +117,7 @@ public:
     [[nodiscard]] bool in_one_piece() const { return tracer_->in_one_piece(); }
 
 private:
-    void configure();
+    void set_frame();
     RenderResult result_of(Picture &&picture);
 
     RenderOptions options_;
@@ -116,6 +125,7 @@ private:
     DeviceEntry entry_;
     int spp_;
     FlatScene flat_;
+    KernelConfig config_;
     RenderStats stats_;
     std::unique_ptr<PathTracer> tracer_;
     std::unique_ptr<Picture> picture_;
@@ -128,41 +138,37 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
       spp_(options.spp > 0 ? options.spp : scene.sample_count) {
     stats_.seconds_device = watch_.lap("open the device");
     const PixelFormat format = scene.film.pixel_format;
-    flat_ = flatten(scene, flatten_options(entry_, options_));
+    flat_ = flatten(scene, options_.sampling);
     scene = {};
-    configure();
+    config_ = configure(flat_, entry_, options_);
+    set_frame();
 
     // The kernel is compiled while the hierarchy is being built.
-    tracer_ = std::make_unique<PathTracer>(entry_, flat_, options_);
+    tracer_ = std::make_unique<PathTracer>(entry_, flat_, config_, options_);
     tracer_->start_compiling();
     build_hierarchy(flat_);
     stats_.host_bytes = flat_.bytes();
     stats_.seconds_build = watch_.lap("build");
     tracer_->compile(stats_);
     stats_.seconds_compile = watch_.lap("compile");
-    check_memory_need(need_of(flat_, entry_, options_, values_of(format, options_), false), entry_);
+    check_memory_need(need_of(flat_, config_, entry_, options_, values_of(format, options_), false),
+                      entry_);
     tracer_->upload(stats_);
     stats_.seconds_upload = watch_.lap("upload");
     picture_ = std::make_unique<Picture>(
-        tiles_of(flat_), format, Picture::Layers{options_.with_variance, options_.with_samples},
-        flat_.frame.film_exponent);
+        tiles_of(flat_.frame, config_), format,
+        Picture::Layers{options_.with_variance, options_.with_samples}, flat_.frame.film_exponent,
+        tracer_->control_layout());
 }
 
-/// What the render decides of the kernel and of the frame.
-void Rendering::configure() {
-    KernelConfig &config = flat_.config;
-    config.DOUBLE_PRECISION = CLR_DOUBLE;
-    config.LANES = CLR_DOUBLE ? 1 : options_.lanes > 0 ? options_.lanes : natural_lanes(entry_);
-    config.TILE = tile_of(entry_, config);
-    config.SAMPLER = options_.independent_sampler ? 1 : 0;
-    config.PROFILE = options_.profile != nullptr ? 1 : 0;
-    config.VARIANCE = options_.with_variance ? 1 : 0;
+/// What the render decides of the frame.
+void Rendering::set_frame() {
     FrameData &frame = flat_.frame;
     frame.seed = options_.seed;
     frame.total_samples = static_cast<uint>(spp_);
-    frame.control_group = static_cast<uint>(control_group_of(flat_, options_));
+    frame.control_group = static_cast<uint>(control_group_of(flat_, config_));
     stats_.device = entry_.name;
-    stats_.lanes = config.LANES;
+    stats_.lanes = config_.LANES;
     stats_.width = static_cast<int>(frame.width);
     stats_.height = static_cast<int>(frame.height);
     stats_.spp = spp_;
@@ -205,8 +211,10 @@ RenderResult Rendering::result_of(Picture &&picture) {
     result.samples = std::move(picture.samples);
     result.variance = std::move(picture.variance);
     if (options_.with_variance) {
-        result.error.factor = variance_factor(tracer_->control_layout(), tracer_->read_control(),
-                                              result.image, flat_.frame.film_exponent);
+        const std::vector<ControlPixel> pixels = tracer_->read_control();
+        result.error.factor = variance_factor(
+            {tracer_->control_layout(), pixels, picture.control_means, flat_.frame.film_exponent},
+            result.image, result.variance);
         for (float &value : result.variance.f32)
             value *= static_cast<float>(result.error.factor.value);
         result.error.relative_variance = mean_relative_variance(result.image, result.variance);
@@ -237,13 +245,13 @@ DeviceEntry device_or_large_cpu(const std::string &spec) {
 
 MemoryNeed memory_at_precision(Scene &&scene, const RenderOptions &options) {
     const DeviceEntry entry = device_or_large_cpu(options.device);
-    FlatScene flat = flatten(scene, flatten_options(entry, options));
+    FlatScene flat = flatten(scene, options.sampling);
+    const KernelConfig config = configure(flat, entry, options);
     const std::size_t values = values_of(scene.film.pixel_format, options);
     scene = {};
     build_hierarchy(flat);
-    flat.config.TILE = tile_of(entry, flat.config);
-    flat.frame.control_group = static_cast<uint>(control_group_of(flat, options));
-    return need_of(flat, entry, options, values, true);
+    flat.frame.control_group = static_cast<uint>(control_group_of(flat, config));
+    return need_of(flat, config, entry, options, values, true);
 }
 
 RenderResult render_at_precision(Scene &&scene, const RenderOptions &options) {

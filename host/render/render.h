@@ -1,7 +1,7 @@
 #pragma once
 /// From a parsed scene to a picture.
 
-#include "device/kernel_config.h"
+#include "config/sampling_options.h"
 #include "film/control.h"
 #include "memory_need.h"
 #include "scene/scene.h"
@@ -10,7 +10,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <set>
 #include <string>
 
 namespace clrender {
@@ -20,24 +19,18 @@ struct Profile;
 struct RenderOptions {
     int spp = 0; ///< samples a pixel; 0: the scene's
     std::uint32_t seed = 0;
-    int lanes = 0;                    ///< 1, 4, 8 or 16; 0: what suits the device
-    std::string device = "auto";      ///< see choose_device()
-    bool double_precision = false;    ///< all in double, with one lane: slow
-    bool brute_force = false;         ///< test every triangle
-    bool pixel_centers = false;       ///< all samples at pixel centres
-    bool independent_sampler = false; ///< in place of Sobol' points
-    Strategy strategy = Strategy::mis;
-    int light_samples = 0;            ///< where a path first meets a diffuse surface: a power
-                                      ///< of 2; 0: chosen
-    int batch = 0;                    ///< blocks of samples in one launch; 0: chosen
-    int tile = 0;                     ///< work-items in one launch; 0: chosen
-    int band_rows = 0;                ///< rows of tiles in one band; 0: chosen
-    bool preview = false;             ///< a few samples of all pixels first, however fast
-    bool with_variance = false;       ///< RenderResult::variance and error are wanted
-    bool with_samples = false;        ///< RenderResult::samples is wanted
-    std::set<std::string> generality; ///< as FlattenOptions::generality
-    std::string kernel_dir;           ///< kernel sources in place of the embedded ones
-    Profile *profile = nullptr;       ///< filled where given, with a kernel that counts
+    int lanes = 0;                 ///< 1, 4, 8 or 16; 0: what suits the device
+    std::string device = "auto";   ///< see choose_device()
+    bool double_precision = false; ///< all in double, with one lane: slow
+    SamplingOptions sampling;
+    int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
+    int tile = 0;                            ///< work-items in one launch; 0: chosen
+    int band_rows = 0;                       ///< rows of tiles in one band; 0: chosen
+    bool preview = false;                    ///< a few samples of all pixels first, however fast
+    bool with_variance = false;              ///< RenderResult::variance and error are wanted
+    bool with_samples = false;               ///< RenderResult::samples is wanted
+    std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
+    Profile *profile = nullptr;              ///< filled where given, with a kernel that counts
     std::function<void(double)> on_progress; ///< paths done; called after each launch
     std::function<bool()> should_stop;       ///< asked after each launch
 };

@@ -45,6 +45,7 @@ private:
     int read_bitmap(Properties &properties, SpectrumUse use);
     int read_checkerboard(Properties &properties);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
+    int read_raw_constant(Properties &properties, SpectrumUse use);
     /// The colour or texture `name` of an object, or none.
     int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
     /// The texture of the numbers `name`.

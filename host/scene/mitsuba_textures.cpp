@@ -13,7 +13,8 @@ namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> texture_types{"bitmap", "checkerboard", "uniform", "srgb", "d65"};
+const std::vector<std::string> texture_types{"bitmap",  "checkerboard", "rawconstant",
+                                             "uniform", "srgb",         "d65"};
 
 bool any_below(const Rgb &rgb, double limit) {
     return rgb.r < limit || rgb.g < limit || rgb.b < limit;
@@ -65,7 +66,7 @@ double mean_of(const Rgb &rgb) {
 }
 
 /// What Mitsuba makes of colours where it asks for a number: constant ones give their mean, bitmaps
-/// their luminance, checkerboards (up to 3.9.1 at least) the number of the other squares.
+/// their luminance, and checkerboards show color1 where they else show color0.
 void make_number(Texture &texture) {
     texture.is_number = true;
     std::swap(texture.color0, texture.color1);
@@ -128,6 +129,8 @@ int SceneReader::read_texture(int object, SpectrumUse use) {
         index = read_bitmap(properties, use);
     else if (type == "checkerboard")
         index = read_checkerboard(properties);
+    else if (type == "rawconstant")
+        index = read_raw_constant(properties, use);
     else if (type == "uniform" || type == "srgb" || type == "d65")
         index = read_spectrum_object(properties, use);
     else
@@ -142,18 +145,18 @@ int SceneReader::read_texture(int object, SpectrumUse use) {
 int SceneReader::read_bitmap(Properties &properties, SpectrumUse use) {
     Texture texture;
     texture.kind = TextureKind::bitmap;
-    texture.raw = properties.boolean("raw", false);
+    texture.format.raw = properties.boolean("raw", false);
+    texture.format.half = properties.choice("format", 0, {"auto", "variant", "fp16"}) == 2;
     texture.filter =
         static_cast<TextureFilter>(properties.choice("filter_type", 0, {"bilinear", "nearest"}));
     texture.wrap =
         static_cast<TextureWrap>(properties.choice("wrap_mode", 0, {"repeat", "mirror", "clamp"}));
     texture.to_uv = properties.uv_transform("to_uv");
-    properties.choice("format", 0, {"auto", "variant", "fp16"});
     properties.ignore({"accel"});
     const std::string path = properties.file("filename");
     if (load_images_)
         texture.bitmap = files_.image(path, properties.where("filename"),
-                                      {texture.raw, use == SpectrumUse::emission});
+                                      {texture.format.raw, use == SpectrumUse::emission});
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;
 }
@@ -176,6 +179,23 @@ int SceneReader::read_spectrum_object(Properties &properties, SpectrumUse use) {
     const std::string name = type == "d65" ? "scale" : "value";
     const Rgb value(properties.number(name, 1));
     check_range(properties, name, value, use, false);
+    return add_constant(value);
+}
+
+int SceneReader::read_raw_constant(Properties &properties, SpectrumUse use) {
+    const Property *property = properties.find("value");
+    if (property == nullptr)
+        properties.fail("value", "is missing, expected a float or a vector");
+    Rgb value;
+    if (const auto *number = std::get_if<double>(&property->value))
+        value = Rgb(*number);
+    else if (const auto *vector = std::get_if<Triple>(&property->value);
+             vector != nullptr && use != SpectrumUse::number)
+        value = vector->value;
+    else
+        properties.fail("value", "is " + type_name(property->value) + ", expected a float" +
+                                     (use == SpectrumUse::number ? "" : " or a vector"));
+    check_range(properties, "value", value, use, false);
     return add_constant(value);
 }
 

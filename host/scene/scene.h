@@ -3,7 +3,7 @@
 /// of Mitsuba 3. Nothing here knows of OpenCL. Everything refers to everything else by index.
 
 #include "../error.h"
-#include "../image/image.h"
+#include "../image/texels.h"
 #include "bsdf.h"
 
 #include <glm/glm.hpp>
@@ -30,7 +30,7 @@ struct Texture {
                                          ///< constant one, the luminance of a bitmap
     Rgb value{0.5};                      ///< constant
     std::shared_ptr<const Image> bitmap; ///< bitmap; shared by all textures that name the same file
-    bool raw = false; ///< bitmap: u8 data are linear, not sRGB-encoded (f32: always)
+    TexelFormat format;                  ///< bitmap
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard

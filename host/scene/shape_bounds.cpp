@@ -34,4 +34,23 @@ Box shape_box(const Shape &shape) {
     return box;
 }
 
+Range shape_range(const Shape &shape, const Box &box, const glm::dvec3 &origin,
+                  const glm::dvec3 &axis) {
+    switch (shape.kind) {
+    case ShapeKind::sphere: {
+        const double middle = glm::dot(glm::dvec3(shape.to_world[3]) - origin, axis);
+        return {middle - sphere_radius(shape), middle + sphere_radius(shape)};
+    }
+    case ShapeKind::rectangle:
+    case ShapeKind::disk:
+    case ShapeKind::mesh:
+        break;
+    }
+    Range range;
+    if (!box.empty())
+        for (const glm::dvec3 &corner : box.corners())
+            range.add(glm::dot(corner - origin, axis));
+    return range;
+}
+
 } // namespace clrender

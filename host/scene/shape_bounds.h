@@ -3,6 +3,8 @@
 
 #include "scene.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 namespace clrender {
@@ -16,10 +18,33 @@ struct Box {
         high = glm::max(high, p);
     }
     [[nodiscard]] bool empty() const { return !(low.x <= high.x); }
+    [[nodiscard]] std::array<glm::dvec3, 8> corners() const {
+        std::array<glm::dvec3, 8> all;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i] = {(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                      (i & 4) != 0 ? high.z : low.z};
+        return all;
+    }
+};
+
+/// The range of a coordinate; nothing is in it where low > high.
+struct Range {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+
+    void add(double value) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
 };
 
 /// The box of a shape; of a disk that of the rectangle around it.
 Box shape_box(const Shape &shape);
+
+/// How far a shape reaches along `axis`, measured from `origin`: for a sphere exactly, for others
+/// as far as their `box` does, which is shape_box().
+Range shape_range(const Shape &shape, const Box &box, const glm::dvec3 &origin,
+                  const glm::dvec3 &axis);
 
 /// Radius of a sphere: the cube root of the volume that to_world gives a unit cube.
 double sphere_radius(const Shape &shape);

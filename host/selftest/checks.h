@@ -14,7 +14,7 @@ Checks check_math(ProbeDevice &device);
 /// The random numbers.
 Checks check_numbers(ProbeDevice &device);
 
-/// sphere_intersect, sphere_root_bits, sphere_blocks, sphere_blocks_solid.
+/// sphere_intersect, sphere_root_bits, sphere_blocks, sphere_blocks_opaque.
 Checks check_spheres(ProbeDevice &device);
 
 /// planar_intersect and planar_intersect_across.

@@ -46,7 +46,7 @@ FlatScene map_scene(Random &random, int width, int height, Content content) {
     const glm::dvec3 x = glm::normalize(glm::cross(z, random.direction()));
     emitter.to_world = glm::dmat4(glm::dmat3(x, glm::cross(z, x), z));
     scene.emitters.push_back(emitter);
-    FlattenOptions options;
+    SamplingOptions options;
     Flattening work{scene, options};
     double power = 0;
     flatten_environment(work, scene.emitters.front(), &power);

@@ -42,7 +42,7 @@ struct Lights {
     std::vector<Kind> kind;
     std::vector<LightExtent> extents;
 
-    Lights() { flat.shape_frames = {1, 0, 0, 0, 1, 0, 0, 0, 1}; }
+    Lights() { flat.shape_frames = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}; }
 
     void add(Random &random, Kind k, const glm::dvec3 &at, double size) {
         Light light{};
@@ -63,7 +63,7 @@ struct Lights {
             break;
         case Kind::sphere:
             light.kind = info.kind = CLR_LIGHT_SPHERE;
-            light.area = info.radius = static_cast<float>(size);
+            light.radius = info.radius = static_cast<float>(size);
             std::copy_n(light.position, 3, info.center);
             info.density = 1;
             break;
@@ -120,8 +120,7 @@ private:
         const glm::dvec3 across = glm::cross(vector(t.e1), vector(t.e2));
         t.smooth = smooth ? 1 : 0;
         for (int c = 0; c < 3; ++c)
-            store(t.normals + std::ptrdiff_t{3} * c,
-                  glm::normalize(glm::normalize(across) + 0.3 * random.direction()));
+            store(t.normals[c], glm::normalize(glm::normalize(across) + 0.3 * random.direction()));
         light.prim = static_cast<uint>(flat.light_triangles.size());
         light.area = static_cast<float>(glm::length(across) / 2);
         flat.light_triangles.push_back(t);
@@ -141,7 +140,7 @@ struct LightHit {
 LightHit meet_sphere(const Light &light, const glm::dvec3 &o, const glm::dvec3 &d) {
     LightHit hit;
     const glm::dvec3 to_center = vector(light.position) - o;
-    const double radius = light.area, distance2 = glm::dot(to_center, to_center);
+    const double radius = light.radius, distance2 = glm::dot(to_center, to_center);
     const double sine2 = radius * radius / distance2;
     const double cap = sine2 / (1 + std::sqrt(1 - sine2));
     const double distance = std::sqrt(distance2);
@@ -207,8 +206,8 @@ LightHit meet(const Lights &lights, std::size_t i, const glm::dvec3 &o, const gl
     LightHit hit = meet_plane(vector(t.v0), vector(t.e1), vector(t.e2), light.area, o, d);
     const double b1 = hit.place.x, b2 = hit.place.y;
     if (t.smooth != 0)
-        hit.front = glm::dot((1 - b1 - b2) * vector(t.normals) + b1 * vector(t.normals + 3) +
-                                 b2 * vector(t.normals + 6),
+        hit.front = glm::dot((1 - b1 - b2) * vector(t.normals[0]) + b1 * vector(t.normals[1]) +
+                                 b2 * vector(t.normals[2]),
                              d) < 0;
     // Even by area: (b1 + b2)^2, and the share of b2 in it.
     hit.place = {(b1 + b2) * (b1 + b2), b2 / (b1 + b2)};

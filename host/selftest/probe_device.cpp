@@ -1,8 +1,8 @@
 #include "probe_device.h"
 
-#include "device/device_scene.h"
 #include "device/kernel_program.h"
 #include "device/upload.h"
+#include "render/device_scene.h"
 
 #include <cmath>
 
@@ -25,11 +25,11 @@ KernelConfig probe_config(int lanes, int filter) {
     config.HAS_PLANAR_LIGHTS = config.HAS_TRIANGLE_LIGHTS = 1;
     // A huge sphere's second entry follows the first (probe_sphere_huge).
     config.SPHERE_COUNT = config.HUGE_COUNT = 1;
-    config.LIGHT_COUNT = -1;
-    config.ENVIRONMENT = 2;
+    config.LIGHT_COUNT = CLR_MANY_LIGHTS;
+    config.ENVIRONMENT = CLR_ENVIRONMENT_MAP;
     config.HAS_LENS = config.HAS_CLIP = 1;
     config.FILTER = filter;
-    config.BORDER = filter == 3 ? probe_border : 0;
+    config.BORDER = filter == CLR_FILTER_SPLATTED ? probe_border : 0;
     return config;
 }
 
@@ -59,8 +59,7 @@ cl::Program ProbeDevice::compile(int filter) const {
 }
 
 cl::Kernel ProbeDevice::kernel(const std::string &name) {
-    constexpr int splatted = 3, sampled = 1;
-    const int filter = name == "probe_filter_offset" ? sampled : splatted;
+    const int filter = name == "probe_filter_offset" ? CLR_FILTER_SAMPLED : CLR_FILTER_SPLATTED;
     auto program = programs_.find(filter);
     if (program == programs_.end())
         program = programs_.emplace(filter, compile(filter)).first;

@@ -2,8 +2,8 @@
 /// A device with the probe kernels (kernels/probes/selftest_probes.cl) compiled for it.
 
 #include "check.h"
+#include "config/kernel_config.h"
 #include "device/cl_context.h"
-#include "device/kernel_config.h"
 #include "device/kernel_sources.h"
 #include "flatten/flat_scene.h"
 

@@ -154,7 +154,7 @@ Check check_lights(const RenderOptions &how) {
     Texture bitmap;
     bitmap.kind = TextureKind::bitmap;
     bitmap.bitmap = grey;
-    bitmap.raw = true;
+    bitmap.format.raw = true;
     b.scene.textures.push_back(bitmap);
     constexpr double albedo = 102 / 255.0;
     const glm::dvec3 up(0, 1, 0), here(0);

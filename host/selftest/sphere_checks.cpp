@@ -86,13 +86,13 @@ struct SphereOracle {
 
 struct SphereAnswer {
     double first, outside;
-    bool blocks, blocks_solid;
+    bool blocks, blocks_opaque;
 };
 
-std::vector<SphereAnswer> ask(ProbeDevice &device, const SphereRays &rays, bool wide) {
+std::vector<SphereAnswer> ask(ProbeDevice &device, const SphereRays &rays, bool large) {
     const cl::Buffer spheres = device.upload(rays.spheres);
     const std::vector<float> out =
-        device.run("probe_sphere", rays.in, 8, 4, spheres, cl_uint{wide ? 1u : 0u});
+        device.run("probe_sphere", rays.in, 8, 4, spheres, cl_uint{large ? 1u : 0u});
     std::vector<SphereAnswer> answers;
     answers.reserve(rays.count());
     for (std::size_t i = 0; i < rays.count(); ++i)
@@ -115,7 +115,7 @@ void check_far(ProbeDevice &device, double distance, double allowed, Checks &che
         rays.add_ray(o, glm::normalize(center + 1.2 * random.point() - o), far_away, false);
     }
     const std::vector<SphereAnswer> answers = ask(device, rays, false);
-    WrongShare wrong_first, wrong_outside, wrong_blocks, wrong_solid;
+    WrongShare wrong_first, wrong_outside, wrong_blocks, wrong_opaque;
     Worst error_first, error_outside;
     for (std::size_t i = 0; i < count; ++i) {
         const SphereOracle oracle(rays, i);
@@ -124,7 +124,7 @@ void check_far(ProbeDevice &device, double distance, double allowed, Checks &che
         wrong_first.see(hit != (answer.first < infinity));
         wrong_outside.see(hit != (answer.outside < infinity));
         wrong_blocks.see(hit != answer.blocks);
-        wrong_solid.see(hit != answer.blocks_solid);
+        wrong_opaque.see(hit != answer.blocks_opaque);
         if (oracle.depth > 0.02) { // less than .99 of the radius off its centre
             error_first.see(std::abs(answer.first - oracle.near) / ulp(distance));
             error_outside.see(std::abs(answer.outside - oracle.near) / ulp(distance));
@@ -136,40 +136,40 @@ void check_far(ProbeDevice &device, double distance, double allowed, Checks &che
     checks.push_back({"sphere_intersect", share, wrong_first.value(), allowed});
     checks.push_back({"sphere_root_bits", share, wrong_outside.value(), allowed});
     checks.push_back({"sphere_blocks", share, wrong_blocks.value(), allowed});
-    checks.push_back({"sphere_blocks_solid", share, wrong_solid.value(), allowed});
+    checks.push_back({"sphere_blocks_opaque", share, wrong_opaque.value(), allowed});
     checks.push_back({"sphere_intersect", error, error_first.value(), 8});
     checks.push_back({"sphere_root_bits", error, error_outside.value(), 8});
 }
 
 /// Spheres as rooms have them, rays from outside, inside and the surface, up to any distance. From
-/// outside alone where `wide`: then with the other formula, for spheres larger than the room.
-void check_room(ProbeDevice &device, bool wide, Checks &checks) {
-    Random random(wide ? 5 : 2);
+/// outside alone where `large`: then with the other formula, for spheres larger than the room.
+void check_room(ProbeDevice &device, bool large, Checks &checks) {
+    Random random(large ? 5 : 2);
     SphereRays rays;
     const std::size_t count = device.count(1e6);
     double radius = 1;
     glm::dvec3 center;
     for (std::size_t i = 0; i < count; ++i) {
         if (i % probe_group == 0) {
-            radius = wide ? std::exp2(random.between(0, 6)) : std::exp2(random.between(-7, 0));
-            center = random.point() + (wide ? random.direction() * radius : glm::dvec3(0));
+            radius = large ? std::exp2(random.between(0, 6)) : std::exp2(random.between(-7, 0));
+            center = random.point() + (large ? random.direction() * radius : glm::dvec3(0));
             rays.add_sphere(center, radius);
         }
         glm::dvec3 o = 2.0 * random.point();
         const glm::dvec3 n = random.direction();
         const std::size_t kind = i % 4;
-        const bool self = kind == 3 && !wide;
+        const bool self = kind == 3 && !large;
         if (self)
             o = center + radius * n;
-        else if (kind == 1 && !wide)
+        else if (kind == 1 && !large)
             o = center + radius * double{random.unit()} * n;
         const glm::dvec3 aim = center + 1.3 * radius * random.point();
         const glm::dvec3 d =
-            kind == 0 || wide ? glm::normalize(aim - rounded(o)) : random.direction();
+            kind == 0 || large ? glm::normalize(aim - rounded(o)) : random.direction();
         rays.add_ray(o, d, i % 3 == 0 ? double{far_away} : random.between(0, 4), self);
     }
-    const std::vector<SphereAnswer> answers = ask(device, rays, wide);
-    WrongShare first, outside, blocks, solid;
+    const std::vector<SphereAnswer> answers = ask(device, rays, large);
+    WrongShare first, outside, blocks, opaque;
     Worst error_first, error_outside;
     for (std::size_t i = 0; i < count; ++i) {
         const SphereOracle oracle(rays, i);
@@ -187,21 +187,21 @@ void check_room(ProbeDevice &device, bool wide, Checks &checks) {
             continue; // no ray starts inside of, or on, a sphere that these are asked for
         const double t_outside = oracle.first_outside();
         outside.see((t_outside < infinity) != (answer.outside < infinity));
-        solid.see((t_outside < infinity) != answer.blocks_solid);
+        opaque.see((t_outside < infinity) != answer.blocks_opaque);
         if (t_outside < infinity && answer.outside < infinity)
             error_outside.see(std::abs(answer.outside - t_outside) / unit);
     }
-    const std::string where = wide ? ", spheres larger than the room" : ", spheres in a room";
+    const std::string where = large ? ", spheres larger than the room" : ", spheres in a room";
     const std::string share = "share of wrong hits" + where;
     const std::string error = "error of t over distance and radius" + where;
-    if (!wide) {
+    if (!large) {
         checks.push_back({"sphere_intersect", share, first.value(), 0});
         checks.push_back({"sphere_blocks", share, blocks.value(), 0});
         checks.push_back({"sphere_intersect", error, error_first.value(), 5e-7});
     }
     checks.push_back({"sphere_root_bits", share, outside.value(), 0});
-    checks.push_back({"sphere_blocks_solid", share, solid.value(), 0});
-    checks.push_back({"sphere_root_bits", error, error_outside.value(), wide ? 4e-6 : 5e-7});
+    checks.push_back({"sphere_blocks_opaque", share, opaque.value(), 0});
+    checks.push_back({"sphere_root_bits", error, error_outside.value(), large ? 4e-6 : 5e-7});
 }
 
 /// Close above a huge sphere: how far from its surface the hit points lie.
@@ -222,8 +222,8 @@ void check_near_huge(ProbeDevice &device, Checks &checks) {
         rays.add_ray(o, glm::normalize(d), far_away, false);
     }
     const std::vector<SphereAnswer> answers = ask(device, rays, false);
-    const std::vector<SphereAnswer> wide = ask(device, rays, true);
-    Worst first, outside, outside_wide;
+    const std::vector<SphereAnswer> large = ask(device, rays, true);
+    Worst first, outside, outside_large;
     for (std::size_t i = 0; i < count; ++i) {
         const SphereOracle oracle(rays, i);
         const double half = (oracle.far - oracle.near) / 2;
@@ -238,12 +238,12 @@ void check_near_huge(ProbeDevice &device, Checks &checks) {
         };
         first.see(height(answers[i].first));
         outside.see(height(answers[i].outside));
-        outside_wide.see(height(wide[i].outside));
+        outside_large.see(height(large[i].outside));
     }
     const std::string what = "height of hits above a huge sphere, ulp of its radius";
     checks.push_back({"sphere_intersect", what, first.value(), 12});
     checks.push_back({"sphere_root_bits", what, outside.value(), 12});
-    checks.push_back({"sphere_root_bits", what + ", wide", outside_wide.value(), 12});
+    checks.push_back({"sphere_root_bits", what + ", large", outside_large.value(), 12});
 }
 
 /// Close above a sphere that is huge against what lies around the origin, by what its surface does

@@ -145,9 +145,9 @@ void check_sphere_uv(ProbeDevice &device, Checks &checks) {
     const glm::dvec3 z = glm::normalize(random.direction());
     const glm::dvec3 x = glm::normalize(glm::cross(z, random.direction()));
     const glm::dmat3 frame(x, glm::cross(z, x), z); // columns are the sphere's own axes
+    flat.shape_frames.emplace_back();
     for (int axis = 0; axis < 3; ++axis)
-        for (int c = 0; c < 3; ++c)
-            flat.shape_frames.push_back(static_cast<float>(frame[axis][c]));
+        store(flat.shape_frames.back().axis[axis], frame[axis]);
     std::vector<float> in;
     const std::size_t count = device.count(1e5);
     for (std::size_t i = 0; i < count; ++i) {

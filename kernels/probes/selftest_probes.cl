@@ -64,8 +64,8 @@ __kernel void probe_math(__global const clr_real *in, __global clr_real *out, ui
 
 /* A sphere for each group of rays. in: o, d, t_max, 1 if the ray starts on the sphere. out: the
    distance by sphere_intersect and by sphere_root_bits, INFINITY for none before t_max; what
-   sphere_blocks and sphere_blocks_solid say. */
-__kernel void probe_sphere(__global const SphereTest *spheres, uint wide,
+   sphere_blocks and sphere_blocks_opaque say. */
+__kernel void probe_sphere(__global const SphereTest *spheres, uint large,
                            __global const clr_real *in, __global clr_real *out, uint count) {
     PROBE_FIRST;
     __global const SphereTest *s = spheres + first / PROBE_GROUP;
@@ -76,11 +76,11 @@ __kernel void probe_sphere(__global const SphereTest *spheres, uint wide,
     const mask_l met = sphere_intersect(s, o, d, self, t_max, &t);
     probe_out(pick(met, t, real_of(INFINITY)), out, first, count, 4u, 0u);
     const bits_l far = as_bits_l(t_max);
-    const bits_l bits = min(sphere_root_bits(s, (int)wide, o, d), far);
+    const bits_l bits = min(sphere_root_bits(s, (int)large, o, d), far);
     probe_out(pick(same_bits(bits, far), real_of(INFINITY), as_real(bits)), out, first, count, 4u,
               1u);
     probe_out(probe_flag(sphere_blocks(s, o, d, self, t_max)), out, first, count, 4u, 2u);
-    probe_out(probe_flag(sphere_blocks_solid(s, (int)wide, o, d, t_max)), out, first, count, 4u,
+    probe_out(probe_flag(sphere_blocks_opaque(s, (int)large, o, d, t_max)), out, first, count, 4u,
               3u);
 }
 
@@ -176,7 +176,7 @@ __kernel void probe_sphere_uv(PROBE_SCENE_PARAMETERS) {
     probe_out(v, out, first, count, 2u, 1u);
 }
 
-#if FILTER == 3
+#if FILTER == CLR_FILTER_SPLATTED
 /* in: the place within a pixel along an axis. out: the weights of the pixels around it. */
 __kernel void probe_filter(PROBE_SCENE_PARAMETERS) {
     PROBE_SCENE;
@@ -188,7 +188,7 @@ __kernel void probe_filter(PROBE_SCENE_PARAMETERS) {
             out[weights * (first + i) + k] = weight[k];
     }
 }
-#elif FILTER == 1
+#elif FILTER == CLR_FILTER_SAMPLED
 /* in: a number, and how many pixels the picture has on either side. out: the offset from the
    pixel's centre and the weight. */
 __kernel void probe_filter_offset(PROBE_SCENE_PARAMETERS) {

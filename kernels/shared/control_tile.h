@@ -8,16 +8,11 @@
 
 CLR_SHARED_BEGIN
 
-/* Sums over those samples of a control tile that reach a pixel of it, exact as FilmPixel's and in
-   its units: `difference` of w times the distance from the value of each block's first sample,
-   those of the second rendering taken off; and the `scatter` of both. */
-#define CLR_DIFFERENCE_WORDS 4
-#define CLR_DIFFERENCE_LSB (-76)
+/* Of both renderings, over those samples of a control tile that reach a pixel of it. */
 typedef struct {
-    uint difference[CLR_DIFFERENCE_WORDS][4];
-    uint scatter[CLR_SCATTER_WORDS][4];
+    MeasuredPixel rendering[2];
 } ControlPixel;
-CLR_STATIC_SIZE(ControlPixel, 144);
+CLR_STATIC_SIZE(ControlPixel, 480);
 
 /* The tiles [group * size, (group + 1) * size) have one control tile: this. */
 CLR_SHARED_INLINE uint clr_control_tile(uint group, uint size, uint tiles) {

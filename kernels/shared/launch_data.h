@@ -78,26 +78,46 @@ CLR_SHARED_BEGIN
 
    `colour`: of w R, w G, w B, w alpha over the samples that reach the pixel, w being the filter's
    weight. The lowest bit is worth 2^CLR_COLOUR_LSB units (FrameData::film_exponent; of alpha: 1).
-   `scatter`: of w^2 times the squared distances of R, G, B, alpha from the weighted mean of a
-   block, times n / (n - 1) where n samples count (Kish: (sum of w)^2 / sum of w^2). The lowest bit
-   is worth 2^CLR_SCATTER_LSB squared units. `weight`: of w, of 64 bits, the lowest worth
-   2^CLR_WEIGHT_LSB. `samples`: that lie in the pixel. `clamped`: blocks with a value beyond
-   CLR_FILM_LIMIT (in units of the highest word), which is put in its place: 2^28 blocks of that
-   size do not overflow. */
+   `weight`: of w, of 64 bits, the lowest worth 2^CLR_WEIGHT_LSB. `samples`: that lie in the pixel.
+   `clamped`: blocks with a value beyond CLR_FILM_LIMIT (in units of the highest word), which is put
+   in its place: 2^28 blocks of that size do not overflow. */
 #define CLR_COLOUR_WORDS 4
 #define CLR_COLOUR_LSB (-76)
-#define CLR_SCATTER_WORDS 5
-#define CLR_SCATTER_LSB (-96)
 #define CLR_WEIGHT_LSB (-30)
 #define CLR_FILM_LIMIT 8
 typedef struct {
     uint colour[CLR_COLOUR_WORDS][4];
-    uint scatter[CLR_SCATTER_WORDS][4];
     uint weight[2];
     uint samples;
     uint clamped;
 } FilmPixel;
-CLR_STATIC_SIZE(FilmPixel, 160);
+CLR_STATIC_SIZE(FilmPixel, 80);
+
+/* What the variance of a pixel follows from, where it is wanted (VARIANCE): of the same samples,
+   with L for R, G, B or alpha, the sums of w^2 L and w^2 L^2, in units and squared units, and of
+   w^2, of 64 bits, the lowest worth 2^CLR_SQUARE_WEIGHT_LSB. The sum of w^2 (L - m)^2 follows for
+   any m, such as the mean over tiles that do not know one another. It may be small against that of
+   w^2 L^2: what a block adds to the three sums belongs to one float weight, mean and scatter, and
+   the products of these are added without rounding (film_add_moments). */
+#define CLR_FIRST_WORDS CLR_COLOUR_WORDS
+#define CLR_FIRST_LSB CLR_COLOUR_LSB
+#define CLR_SECOND_WORDS 5
+#define CLR_SECOND_LSB (-96)
+#define CLR_SQUARE_WEIGHT_LSB (-32)
+typedef struct {
+    uint first[CLR_FIRST_WORDS][4];
+    uint second[CLR_SECOND_WORDS][4];
+    uint weight[2];
+    uint pad[2];
+} FilmMoments;
+CLR_STATIC_SIZE(FilmMoments, 160);
+
+/* The film's pixels where the variance is wanted. */
+typedef struct {
+    FilmPixel sums;
+    FilmMoments moments;
+} MeasuredPixel;
+CLR_STATIC_SIZE(MeasuredPixel, 240);
 
 /* Tiles whose splats cannot meet have the same colour: even or odd column and row of the tile. */
 #define CLR_TILE_COLOURS 4

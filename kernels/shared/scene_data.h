@@ -63,7 +63,7 @@ CLR_STATIC_SIZE(ShapeInfo, 8);
    one a and h, see sphere.clh) or a planar's normal and its distance from the origin, the shape's
    info, the first half of the material of its sides, where they do not differ
    (MATERIALS_IN_RECORDS), and a planar's dual vectors: its coordinates of the point p are
-   ra . p + frame[3] and rb . p + frame[7]. */
+   to_a . p + to_a[3] and to_b . p + to_b[3]. */
 typedef struct {
     clr_real place[3]; /* centre or normal */
     clr_real size;     /* radius or distance */
@@ -72,7 +72,8 @@ typedef struct {
     clr_word is_disk;
     clr_real inv_size; /* of a sphere */
     clr_real material[8];
-    clr_real frame[8]; /* of a planar */
+    clr_real to_a[4]; /* of a planar */
+    clr_real to_b[4];
 } PrimitiveRecord;
 CLR_STATIC_WORDS(PrimitiveRecord, 24);
 
@@ -110,6 +111,12 @@ typedef struct {
 } Material;
 CLR_STATIC_WORDS(Material, 16);
 
+/* From the world's axes to the own ones of a sphere, for its (u, v). */
+typedef struct {
+    clr_real axis[3][3];
+} ShapeFrame;
+CLR_STATIC_WORDS(ShapeFrame, 9);
+
 #define CLR_LIGHT_POINT 0u
 #define CLR_LIGHT_SPHERE 1u
 #define CLR_LIGHT_PLANAR 2u
@@ -118,7 +125,7 @@ CLR_STATIC_WORDS(Material, 16);
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
    light triangles; bit k of `trail` is the child taken at level k of the light tree. `position` is
    that of a point, the centre of a sphere, or the middle of the only light. Point: radiance holds
-   the intensity, times the square of the unit of length. Sphere: `area` holds the radius. */
+   the intensity, times the square of the unit of length. */
 typedef struct {
     clr_real position[3];
     clr_word kind;
@@ -126,24 +133,27 @@ typedef struct {
     clr_word texture;
     clr_word prim;
     clr_word trail;
-    clr_real area;
-    clr_word shape; /* of a sphere */
+    clr_real area;   /* of a planar or a triangle */
+    clr_real radius; /* of a sphere */
+    clr_word shape;  /* of a sphere */
 } Light;
-CLR_STATIC_WORDS(Light, 12);
+CLR_STATIC_WORDS(Light, 13);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
    triangle that is the only light, 1 for spheres and for the other triangles (kind says which), 0
-   where it is never sampled. The light is `light`, for a triangle the primitive's number added. */
+   where it is never sampled. Primitive `first_prim` is light `light`, and the further triangles of
+   a mesh are the lights that follow. */
 typedef struct {
     clr_real radiance[3];
     clr_word texture;
     clr_real density;
     clr_word kind;
-    clr_real radius;
     clr_word light;
+    clr_word first_prim;
     clr_real center[3];
-    clr_word pad[5];
+    clr_real radius;
+    clr_word pad[4];
 } EmitterInfo;
 CLR_STATIC_WORDS(EmitterInfo, 16);
 
@@ -156,8 +166,8 @@ typedef struct {
     clr_real pad0;
     clr_real e2[3];
     clr_real pad1;
-    clr_real normals[9];
-    clr_real uvs[6];
+    clr_real normals[3][3];
+    clr_real uvs[3][2];
     clr_real pad2;
 } LightTriangle;
 CLR_STATIC_WORDS(LightTriangle, 28);
@@ -192,7 +202,10 @@ CLR_STATIC_WORDS(LightNode, 24);
 #define CLR_WRAP_CLAMP 2u
 
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
-   bytes in the u8 array (through decode table `decode`: 0 linear, 1 sRGB), or triples of floats. */
+   bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. */
+#define CLR_DECODE_LINEAR 0u
+#define CLR_DECODE_SRGB 1u
+#define CLR_DECODE_HALF 2u /* added: the same, rounded to half precision */
 typedef struct {
     clr_real to_uv[6];
     uint kind;

@@ -102,7 +102,7 @@ TEST_CASE("What an unfinished run has left in PoCL's cache is removed") {
     fs::remove_all(below / "kernels");
     caches.truncate("clrender/pocl", GENERATE(0, 5000));
     for (const auto &entry : fs::recursive_directory_iterator(below / "pocl"))
-        fs::last_write_time(entry, fs::file_time_type::clock::now() - std::chrono::hours(1));
+        fs::last_write_time(entry, fs::file_time_type::clock::now() - std::chrono::hours(2));
     CHECK_FALSE(caches.render_hits());
     CHECK(read_file(caches.folder.path() / "a.pfm") == picture);
     CHECK(caches.render_hits());

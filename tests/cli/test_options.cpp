@@ -5,7 +5,6 @@
 
 #include <catch2/catch.hpp>
 
-using clrender::cli::Accel;
 using clrender::cli::Command;
 using clrender::cli::Options;
 using clrender::cli::ParseResult;
@@ -37,9 +36,9 @@ TEST_CASE("A scene alone: everything else is left to the scene and the program")
     CHECK_FALSE(options.rr_depth.has_value());
     CHECK_FALSE(options.seed.has_value());
     CHECK(options.lanes == 0);
-    CHECK(options.light_samples == 0);
-    CHECK(options.strategy == clrender::Strategy::mis);
-    CHECK(options.accel == Accel::bvh);
+    CHECK(options.sampling.light_samples == 0);
+    CHECK(options.sampling.strategy == clrender::Strategy::mis);
+    CHECK(!options.sampling.brute_force);
     CHECK(options.exposure == 0);
     CHECK(options.defines.empty());
     CHECK(options.stats.empty());
@@ -93,10 +92,10 @@ TEST_CASE("Every option of the contract is read") {
     CHECK(options.lanes == 16);
     CHECK(options.defines == std::map<std::string, std::string>{{"a", "1"}, {"b", "x=y"}});
     CHECK(options.exposure == -1.5);
-    CHECK(options.pixel_centers);
-    CHECK(options.light_samples == 8);
-    CHECK(options.strategy == clrender::Strategy::bsdf);
-    CHECK(options.accel == Accel::none);
+    CHECK(options.sampling.pixel_centers);
+    CHECK(options.sampling.light_samples == 8);
+    CHECK(options.sampling.strategy == clrender::Strategy::bsdf);
+    CHECK(options.sampling.brute_force);
     CHECK(options.check);
     CHECK(options.stats == "s.json");
     CHECK(options.verbose);
@@ -132,11 +131,12 @@ TEST_CASE("A profile takes the argument behind it only where that is a .json fil
 }
 
 TEST_CASE("Features that the kernel gets though the scene does not need them") {
-    CHECK(accept({"scene.xml"}).generality.empty());
-    CHECK(
-        accept({"scene.xml", "--generic", "HAS_LENS,HAS_CLIP", "--generic=HAS_ALPHA"}).generality ==
-        std::set<std::string>{"HAS_ALPHA", "HAS_CLIP", "HAS_LENS"});
-    CHECK(accept({"scene.xml", "--generic", "all"}).generality.count("LIGHT_COUNT") == 1);
+    CHECK(accept({"scene.xml"}).sampling.forced_features.empty());
+    CHECK(accept({"scene.xml", "--generic", "HAS_LENS,HAS_CLIP", "--generic=HAS_ALPHA"})
+              .sampling.forced_features ==
+          std::set<std::string>{"HAS_ALPHA", "HAS_CLIP", "HAS_LENS"});
+    CHECK(accept({"scene.xml", "--generic", "all"}).sampling.forced_features.count("LIGHT_COUNT") ==
+          1);
 }
 
 TEST_CASE("Double precision has one lane") {

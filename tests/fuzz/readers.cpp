@@ -7,8 +7,14 @@
 #include "memory_limit.h"
 #include "program.h"
 #include "scene/load_scene.h"
+#include "scene/polygon.h"
+#include "verify/reference.h"
 
+#include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <vector>
 
 namespace clrender::fuzz {
 
@@ -24,6 +30,40 @@ void load_and_flatten(const std::string &path) {
 
 void load_picture(const std::string &path) {
     (void)read_image(path);
+}
+
+void load_reference(const std::string &path) {
+    (void)verify::read_reference(path);
+}
+
+/// A whole number of `bytes` bytes, the lowest first, with a sign.
+double signed_number(const unsigned char *first, int bytes) {
+    std::int32_t value = 0;
+    for (int i = 0; i < bytes; ++i)
+        value += first[i] << (8 * i);
+    return value >= 1 << (8 * bytes - 1) ? value - (1 << (8 * bytes)) : value;
+}
+
+/// Cuts a polygon of whole coordinates, so that corners often repeat and lie on straight lines: x
+/// and y of two bytes, z of one.
+void cut_polygon(const std::string &path) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const auto *bytes = reinterpret_cast<const unsigned char *>(text.data());
+    std::vector<glm::dvec3> corners;
+    for (std::size_t at = 0; at + 5 <= text.size(); at += 5)
+        corners.emplace_back(signed_number(bytes + at, 2), signed_number(bytes + at + 2, 2),
+                             signed_number(bytes + at + 4, 1));
+    if (corners.size() < 3)
+        return;
+    PolygonCutter cutter;
+    cutter.cut(corners);
+    if (cutter.triangles().empty() || cutter.triangles().size() > corners.size() - 2)
+        throw std::logic_error("a polygon has too few triangles, or too many");
+    for (const PolygonCutter::Triangle &triangle : cutter.triangles())
+        for (const std::uint32_t corner : triangle)
+            if (corner >= corners.size())
+                throw std::logic_error("a triangle has a corner that the polygon has not");
 }
 
 /// The folder that all files of this process are written to, with a mesh and a picture that scenes
@@ -43,11 +83,12 @@ const test::TempFolder &folder() {
 
 const std::vector<Reader> &readers() {
     static const std::vector<Reader> all = {
-        {"xml", ".xml", load_and_flatten}, {"obj", ".obj", load_and_flatten},
-        {"ply", ".ply", load_and_flatten}, {"png", ".png", load_picture},
-        {"jpeg", ".jpg", load_picture},    {"tga", ".tga", load_picture},
-        {"bmp", ".bmp", load_picture},     {"hdr", ".hdr", load_picture},
-        {"exr", ".exr", load_picture},     {"pfm", ".pfm", load_picture}};
+        {"xml", ".xml", load_and_flatten},     {"obj", ".obj", load_and_flatten},
+        {"ply", ".ply", load_and_flatten},     {"png", ".png", load_picture},
+        {"jpeg", ".jpg", load_picture},        {"tga", ".tga", load_picture},
+        {"bmp", ".bmp", load_picture},         {"hdr", ".hdr", load_picture},
+        {"exr", ".exr", load_picture},         {"pfm", ".pfm", load_picture},
+        {"reference", ".exr", load_reference}, {"polygon", ".bin", cut_polygon}};
     return all;
 }
 

@@ -29,17 +29,19 @@ void check_matrix(const glm::dmat4 &actual, const std::array<double, 16> &rows) 
 Rgb reflectance(const std::string &value) {
     const Scene scene =
         load_text(R"(<shape type="sphere"><bsdf type="diffuse">)" + value + "</bsdf></shape>");
-    return scene.textures.at(static_cast<std::size_t>(scene.bsdfs.at(0).reflectance)).value;
+    const auto &diffuse = std::get<DiffuseBsdf>(scene.bsdfs.at(0).model);
+    return scene.textures.at(static_cast<std::size_t>(diffuse.reflectance)).value;
 }
 
 Rgb intensity(const std::string &value) {
     return load_text(R"(<emitter type="point">)" + value + "</emitter>").emitters.at(0).intensity;
 }
 
-Bsdf bsdf(const std::string &type, const std::string &content) {
-    return load_text(R"(<shape type="sphere"><bsdf type=")" + type + "\">" + content +
-                     "</bsdf></shape>")
-        .bsdfs.at(0);
+template <typename Model> Model bsdf(const std::string &type, const std::string &content) {
+    return std::get<Model>(load_text(R"(<shape type="sphere"><bsdf type=")" + type + "\">" +
+                                     content + "</bsdf></shape>")
+                               .bsdfs.at(0)
+                               .model);
 }
 
 glm::dmat4 transform(const std::string &steps) {
@@ -93,26 +95,65 @@ TEST_CASE("colours of lights") {
 }
 
 TEST_CASE("conductors") {
-    const Bsdf mirror = bsdf("conductor", "");
+    const auto mirror = bsdf<ConductorBsdf>("conductor", "");
     CHECK(mirror.perfect_mirror);
-    const Bsdf gold = bsdf("conductor", R"(<string name="material" value="Au"/>)");
+    const auto gold = bsdf<ConductorBsdf>("conductor", R"(<string name="material" value="Au"/>)");
     CHECK_FALSE(gold.perfect_mirror);
     check_rgb(gold.eta, {.143036, .375307, 1.442045});
     check_rgb(gold.k, {3.982997, 2.385557, 1.603359});
-    const Bsdf stated = bsdf("conductor", R"(<spectrum name="eta" value="400:10 500:5 600:9 700:2"/>
+    const auto stated =
+        bsdf<ConductorBsdf>("conductor", R"(<spectrum name="eta" value="400:10 500:5 600:9 700:2"/>
                                              <rgb name="k" value="1 2 3"/>)");
     check_rgb(stated.eta, {8.59416, 6.54435, 7.29033});
     check_rgb(stated.k, {1, 2, 3});
 }
 
 TEST_CASE("dielectrics") {
-    const Bsdf glass = bsdf("dielectric", "");
-    CHECK(glass.int_ior == 1.5046);
-    CHECK(glass.ext_ior == 1.000277);
-    const Bsdf named = bsdf("dielectric", R"(<string name="int_ior" value="Diamond"/>
+    const auto glass = bsdf<DielectricBsdf>("dielectric", "");
+    CHECK(glass.ior.interior == 1.5046);
+    CHECK(glass.ior.exterior == 1.000277);
+    const auto named = bsdf<DielectricBsdf>("dielectric", R"(<string name="int_ior" value="Diamond"/>
                                              <float name="ext_ior" value="1.3"/>)");
-    CHECK(named.int_ior == 2.419);
-    CHECK(named.ext_ior == 1.3);
+    CHECK(named.ior.interior == 2.419);
+    CHECK(named.ior.exterior == 1.3);
+}
+
+TEST_CASE("rough conductors") {
+    const Scene scene = load_text(R"(<shape type="sphere"><bsdf type="roughconductor">
+        <string name="material" value="Au"/><string name="distribution" value="ggx"/>
+        <rgb name="alpha_u" value=".1 .2 .6"/><float name="alpha_v" value=".4"/>
+        <boolean name="sample_visible" value="false"/></bsdf></shape>)");
+    const auto &rough = std::get<RoughConductorBsdf>(scene.bsdfs.at(0).model);
+    const auto value = [&](int texture) {
+        return scene.textures.at(static_cast<std::size_t>(texture)).value;
+    };
+    CHECK(rough.microfacets.kind == MicrofacetKind::ggx);
+    check_rgb(value(rough.microfacets.alpha_u), Rgb(.3));
+    check_rgb(value(rough.microfacets.alpha_v), Rgb(.4));
+    check_rgb(value(rough.eta), {.143036, .375307, 1.442045});
+    const auto plain = bsdf<RoughConductorBsdf>("roughconductor", "");
+    CHECK(plain.microfacets.kind == MicrofacetKind::beckmann);
+    CHECK(plain.microfacets.alpha_u == plain.microfacets.alpha_v);
+    const auto error = [](const std::string &type, const std::string &content) {
+        return error_of_text("<shape type='sphere'><bsdf type='" + type + "'>" + content +
+                             "</bsdf></shape>");
+    };
+    CHECK_THAT(error("roughconductor", "<float name='alpha_u' value='.1'/>"),
+               Catch::Contains("expected both alpha_u and alpha_v"));
+    CHECK_THAT(error("roughconductor", "<float name='alpha_u' value='.1'/><float name='alpha_v' "
+                                       "value='.1'/><float name='alpha' value='.1'/>"),
+               Catch::Contains("expected only one of them"));
+    CHECK_THAT(error("roughdielectric", "<float name='int_ior' value='1.5'/><float name='ext_ior' "
+                                        "value='1.5'/>"),
+               Catch::Contains("expected two different indices"));
+    CHECK_THAT(error("mask", ""), Catch::Contains("has 0 nested BSDFs, expected one"));
+    CHECK_THAT(error("blendbsdf", "<bsdf type='diffuse'/><bsdf type='diffuse'/>"),
+               Catch::Contains("\"weight\" is missing"));
+    CHECK_THAT(error("normalmap", "<bsdf type='diffuse'/>"), Catch::Contains("\"normalmap\" is missing"));
+    CHECK_THAT(error("bumpmap", "<bsdf type='diffuse'/>"),
+               Catch::Contains("has 0 nested textures, expected one"));
+    CHECK_THAT(error("twosided", "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>"),
+               Catch::Contains("contains a mask, expected a BSDF that lets no light through"));
 }
 
 TEST_CASE("twosided takes one or two BSDFs, also by reference") {
@@ -120,10 +161,14 @@ TEST_CASE("twosided takes one or two BSDFs, also by reference") {
         <shape type="sphere"><bsdf type="twosided"><ref id="b"/><ref id="a"/></bsdf></shape>
         <shape type="sphere"><bsdf type="twosided"><ref id="a"/></bsdf></shape>
         <bsdf type="conductor" id="b"/>)");
-    const Bsdf &two = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(0).bsdf));
+    const auto sides = [&](std::size_t shape) {
+        return std::get<TwosidedBsdf>(
+            scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf)).model);
+    };
+    const TwosidedBsdf two = sides(0);
     CHECK(scene.bsdfs.at(static_cast<std::size_t>(two.front)).id == "b");
     CHECK(scene.bsdfs.at(static_cast<std::size_t>(two.back)).id == "a");
-    const Bsdf &one = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(1).bsdf));
+    const TwosidedBsdf one = sides(1);
     CHECK(one.front == one.back);
     CHECK(one.front == two.back);
 }
@@ -173,7 +218,8 @@ TEST_CASE("shapes without a BSDF are grey, lights black") {
         <shape type="rectangle"><emitter type="area"/></shape>)");
     const auto albedo = [&](std::size_t shape) {
         const Bsdf &surface = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(shape).bsdf));
-        return scene.textures.at(static_cast<std::size_t>(surface.reflectance)).value;
+        const auto &diffuse = std::get<DiffuseBsdf>(surface.model);
+        return scene.textures.at(static_cast<std::size_t>(diffuse.reflectance)).value;
     };
     CHECK(albedo(0) == Rgb(.5));
     CHECK(albedo(1) == Rgb(0));
@@ -255,14 +301,30 @@ TEST_CASE("textures") {
         <texture type="checkerboard" name="reflectance"><rgb name="color0" value=".1 .2 .3"/>
         <transform name="to_uv"><scale x="2" y="3"/><translate x=".1"/></transform></texture>
         </bsdf></shape>)");
-    const Texture &board =
-        scene.textures.at(static_cast<std::size_t>(scene.bsdfs.at(0).reflectance));
+    const auto &diffuse = std::get<DiffuseBsdf>(scene.bsdfs.at(0).model);
+    const Texture &board = scene.textures.at(static_cast<std::size_t>(diffuse.reflectance));
     CHECK(board.kind == TextureKind::checkerboard);
     check_rgb(board.color0, {.1, .2, .3});
     check_rgb(board.color1, Rgb(.2));
     const glm::dvec3 uv = board.to_uv * glm::dvec3(1, 1, 1);
     CHECK(uv.x == Approx(2.1));
     CHECK(uv.y == Approx(3));
+}
+
+TEST_CASE("constants without a colour space") {
+    const auto raw = [](const std::string &value) {
+        return R"(<texture type="rawconstant" name="reflectance">)" + value + "</texture>";
+    };
+    check_rgb(reflectance(raw(R"(<float name="value" value=".5"/>)")), Rgb(.5));
+    check_rgb(reflectance(raw(R"(<vector name="value" value=".5, .25, 0"/>)")), {.5, .25, 0});
+    const auto error = [&](const std::string &value) {
+        return error_of_text(R"(<shape type="sphere"><bsdf type="diffuse">)" + raw(value) +
+                             "</bsdf></shape>");
+    };
+    CHECK_THAT(error(""), Catch::StartsWith("2: ") && Catch::Contains("is missing"));
+    CHECK_THAT(error(R"(<rgb name="value" value=".5"/>)"),
+               Catch::Contains("expected a float or a vector"));
+    CHECK_THAT(error(R"(<vector name="value" value=".5, -1, 0"/>)"), Catch::Contains("negative"));
 }
 
 TEST_CASE("pictures of scenes hold finite values, and none below zero") {

@@ -163,7 +163,7 @@ TEST_CASE("every truncation of a scene file is refused") {
 }
 
 TEST_CASE("what no shape uses may be unsupported, but not wrong") {
-    CHECK(load_text(R"(<bsdf type="principled" id="a"/>)").bsdfs.empty());
+    CHECK(load_text(R"(<bsdf type="hair" id="a"/>)").bsdfs.empty());
     CHECK_THAT(error_of_text(R"(<bsdf type="diffuse" id="a"><float name="x" value="1"/></bsdf>)"),
                StartsWith("2: ") && Contains("unknown property \"x\""));
     CHECK(load_text(R"(<sensor type="perspective" id="one"><float name="fov" value="30"/></sensor>

@@ -49,9 +49,10 @@ TEST_CASE("the camera frames every vertex", "[model]") {
 TEST_CASE("MTL materials become BSDFs and lights", "[model]") {
     const Scene scene = load_model(data + "materials.obj");
     REQUIRE(scene.shapes.size() == 5);
-    const Bsdf &clay = scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)];
-    CHECK(clay.kind == BsdfKind::twosided);
-    const Bsdf &front = scene.bsdfs[static_cast<std::size_t>(clay.front)];
+    const auto &clay = std::get<TwosidedBsdf>(
+        scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)].model);
+    const auto &front =
+        std::get<DiffuseBsdf>(scene.bsdfs[static_cast<std::size_t>(clay.front)].model);
     CHECK(scene.textures[static_cast<std::size_t>(front.reflectance)].value == Rgb(0.8, 0.1, 0.1));
     REQUIRE(scene.shapes[2].emitter == 0);
     const auto radiance = static_cast<std::size_t>(scene.emitters[0].radiance);
@@ -60,12 +61,11 @@ TEST_CASE("MTL materials become BSDFs and lights", "[model]") {
 
 TEST_CASE("glass and mirrors from an MTL", "[model]") {
     const Scene scene = load_model(data + "glass.obj");
-    const Bsdf &glass = scene.bsdfs[static_cast<std::size_t>(scene.shapes[0].bsdf)];
-    CHECK(glass.kind == BsdfKind::dielectric);
-    CHECK(glass.int_ior == 1.33);
-    const Bsdf &mirror = scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)];
-    CHECK(mirror.kind == BsdfKind::conductor);
-    CHECK(mirror.perfect_mirror);
+    const auto model_of = [&](std::size_t shape) {
+        return scene.bsdfs[static_cast<std::size_t>(scene.shapes[shape].bsdf)].model;
+    };
+    CHECK(std::get<DielectricBsdf>(model_of(0)).ior.interior == 1.33);
+    CHECK(std::get<ConductorBsdf>(model_of(1)).perfect_mirror);
 }
 
 TEST_CASE("textures of a model are read once, and checked", "[model]") {

@@ -42,9 +42,10 @@ Model load(const std::string &materials, const std::string &name = "red") {
 
 /// The texture of the first shape, which is diffuse.
 Texture texture_of(const Scene &scene) {
-    const Bsdf &sides = scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(0).bsdf));
-    REQUIRE(sides.kind == BsdfKind::twosided);
-    const Bsdf &front = scene.bsdfs.at(static_cast<std::size_t>(sides.front));
+    const auto &sides = std::get<TwosidedBsdf>(
+        scene.bsdfs.at(static_cast<std::size_t>(scene.shapes.at(0).bsdf)).model);
+    const auto &front =
+        std::get<DiffuseBsdf>(scene.bsdfs.at(static_cast<std::size_t>(sides.front)).model);
     return scene.textures.at(static_cast<std::size_t>(front.reflectance));
 }
 
@@ -261,8 +262,8 @@ TEST_CASE("MTL colours in all their forms", "[obj]") {
     for (int c = 0; c < 3; ++c)
         CHECK(white[c] == Approx(1).epsilon(1e-3));
     const Model halo = load("newmtl red\nKd 1 1 1\nd -halo .5\n");
-    CHECK(halo.scene.bsdfs.at(static_cast<std::size_t>(halo.scene.shapes.at(0).bsdf)).kind ==
-          BsdfKind::dielectric);
+    CHECK(std::holds_alternative<DielectricBsdf>(
+        halo.scene.bsdfs.at(static_cast<std::size_t>(halo.scene.shapes.at(0).bsdf)).model));
     for (const char *bad : {"Kd", "Kd x", "Ni", "Tr one", "Kd xyz", "illum two"})
         CHECK(has(test::error_of([&] { load("newmtl red\n" + std::string(bad) + "\n"); }),
                   "m.mtl:2: "));

@@ -13,10 +13,11 @@ Vector vector(const float *v) {
     return {v[0], v[1], v[2]};
 }
 
-/// The kernels with so many rays a work-item.
+/// The kernels with so many rays a work-item, and so many boxes or primitives tested at once.
 struct Probe {
-    explicit Probe(int lanes)
-        : program(device.build("probes/bvh_probes.cl", "-DLANES=" + std::to_string(lanes))) {}
+    Probe(int lanes, int step)
+        : program(device.build("probes/bvh_probes.cl",
+                               fmt::format("-DLANES={} -DBVH_STEP={}", lanes, step))) {}
     ClTestDevice device;
     cl::Program program;
     cl::Kernel closest{program, "probe_bvh_closest"};
@@ -24,15 +25,15 @@ struct Probe {
     cl::Kernel any{program, "probe_bvh_any"};
 };
 
-Probe &the_probe(int lanes) {
+Probe &the_probe(int lanes, int step) {
     // Never destroyed: a runtime may have shut down before the statics of this program.
-    static auto *const probes = new std::map<int, Probe>;
-    return probes->try_emplace(lanes, lanes).first->second;
+    static auto *const probes = new std::map<std::pair<int, int>, Probe>;
+    return probes->try_emplace({lanes, step}, lanes, step).first->second;
 }
 
 std::vector<BvhProbeHit> run(cl::Kernel Probe::*which, const Bvh &bvh,
-                             const std::vector<BvhProbeRay> &rays, int lanes = 8) {
-    Probe &probe = the_probe(lanes);
+                             const std::vector<BvhProbeRay> &rays, int lanes = 8, int step = 8) {
+    Probe &probe = the_probe(lanes, step);
     const ClTestDevice &device = probe.device;
     cl::Kernel &kernel = probe.*which;
     const cl::Buffer nodes = device.upload(std::span<const BvhNode>(bvh.nodes));
@@ -151,8 +152,9 @@ std::size_t misses(const std::vector<BvhProbeHit> &hits) {
         hits.begin(), hits.end(), [](const BvhProbeHit &hit) { return hit.prim == BVH_NO_PRIM; }));
 }
 
-std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
-    return run(&Probe::closest, bvh, rays);
+std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays,
+                                       int step) {
+    return run(&Probe::closest, bvh, rays, 8, step);
 }
 
 std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays,
@@ -160,9 +162,9 @@ std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProb
     return run(&Probe::packet, bvh, rays, lanes);
 }
 
-std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays) {
+std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays, int step) {
     std::vector<bool> blocked;
-    for (const BvhProbeHit &hit : run(&Probe::any, bvh, rays)) {
+    for (const BvhProbeHit &hit : run(&Probe::any, bvh, rays, 8, step)) {
         blocked.push_back(hit.prim != 0);
     }
     return blocked;

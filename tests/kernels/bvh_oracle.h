@@ -45,13 +45,14 @@ std::vector<Triangle> sphere_mesh(int rings, const glm::vec3 &center, float radi
 /// How many of the rays have met nothing.
 std::size_t misses(const std::vector<BvhProbeHit> &hits);
 
-/// The kernels over a tree, on the tests' device.
-std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
+/// The kernels over a tree, on the tests' device; `step` boxes or primitives are tested at once.
+std::vector<BvhProbeHit> probe_closest(const Bvh &bvh, const std::vector<BvhProbeRay> &rays,
+                                       int step = 8);
 /// The same by packets of 8 or 16 lanes; rays that go another way than those beside them are not
 /// traced (BVH_PROBE_NOT_TRACED).
 std::vector<BvhProbeHit> probe_packets(const Bvh &bvh, const std::vector<BvhProbeRay> &rays,
                                        int lanes);
-std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays);
+std::vector<bool> probe_any(const Bvh &bvh, const std::vector<BvhProbeRay> &rays, int step = 8);
 
 /// Where the line of a ray meets a primitive, in double: at `t`, and `margin` inside (the least
 /// barycentric weight of a triangle; for a sphere how deep the line dips in, relative to the

@@ -152,6 +152,25 @@ TEST_CASE("a packet finds what its rays find one by one, to the bit", "[oclgrind
     CHECK(found > rays.size() / 10);
 }
 
+TEST_CASE("four boxes or primitives at once are tested as eight are, to the bit", "[oclgrind]") {
+    // Blocks of all fillings: the padding behind the last primitive must not count.
+    Random random(9);
+    for (const auto &[triangles, spheres] : {std::pair(300, 100), std::pair(5, 3)}) {
+        const BvhScene scene = random_scene(random, triangles, spheres);
+        const Bvh bvh = build_bvh(scene.triangles, scene.spheres);
+        const Rays rays = awkward_rays(scene, random, rays_of(20000));
+        const auto eight = probe_closest(bvh, rays);
+        const auto four = probe_closest(bvh, rays, 4);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            INFO("ray " << i << ": " << eight[i].prim << " at " << eight[i].t << ", "
+                        << four[i].prim << " at " << four[i].t);
+            REQUIRE(same_bits(eight[i], four[i]));
+        }
+        CHECK(misses(eight) < rays.size());
+        CHECK(probe_any(bvh, rays, 4) == probe_any(bvh, rays));
+    }
+}
+
 TEST_CASE("the weights of a hit give the point of the hit") {
     Random random(3);
     const BvhScene scene = random_scene(random, 200, 0);

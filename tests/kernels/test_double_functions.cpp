@@ -18,7 +18,7 @@ namespace {
 /// What probe_math makes of records of `in_size` numbers, `out_size` for each.
 std::vector<double> run_in_double(const ClTestDevice &device, const std::vector<double> &in,
                                   std::size_t in_size, std::size_t out_size) {
-    KernelConfig config = selftest::probe_config(1, 1);
+    KernelConfig config = selftest::probe_config(1, CLR_FILTER_SAMPLED);
     config.DOUBLE_PRECISION = 1;
     const std::size_t count = in.size() / in_size;
     cl::Kernel kernel(device.build("probes/selftest_probes.cl", config.build_options()),

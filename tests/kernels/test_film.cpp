@@ -2,7 +2,7 @@
 /// up to.
 
 #include "cl_test_device.h"
-#include "device/kernel_config.h"
+#include "config/kernel_config.h"
 #include "film/film_sums.h"
 
 #include <catch2/catch.hpp>
@@ -61,24 +61,56 @@ Integer integer_of(float value) {
     return static_cast<Integer>(static_cast<long double>(value) * highest_word);
 }
 
-/// `exponent`: of the film's unit.
-FilmPixel add_pixel_samples(const ClTestDevice &device, cl_uint samples, float first, float base,
-                            float step, int exponent = 0) {
+/// A pixel with samples as probe_film_pixel makes them.
+struct PixelSamples {
+    cl_uint count = 0;
+    float first = 0, base = 0, step = 0, other = 0;
+    int exponent = 0; ///< of the film's unit
+};
+
+MeasuredPixel pixel_with(const ClTestDevice &device, const PixelSamples &samples) {
     cl::Kernel kernel = build_probe(device, "probe_film_pixel");
     FrameData frame{};
     frame.width = frame.height = 1;
-    frame.film_exponent = exponent;
-    const FilmPixel nothing{};
-    const cl::Buffer film = device.upload<FilmPixel>({&nothing, 1});
+    frame.film_exponent = samples.exponent;
+    const MeasuredPixel nothing{};
+    const cl::Buffer film = device.upload<MeasuredPixel>({&nothing, 1});
     const cl::Buffer frames = device.upload<FrameData>({&frame, 1});
     kernel.setArg(0, frames);
     kernel.setArg(1, film);
-    kernel.setArg(2, samples);
-    kernel.setArg(3, first);
-    kernel.setArg(4, base);
-    kernel.setArg(5, step);
+    kernel.setArg(2, samples.count);
+    kernel.setArg(3, samples.first);
+    kernel.setArg(4, samples.base);
+    kernel.setArg(5, samples.step);
+    kernel.setArg(6, samples.other);
     device.run(kernel, 1, 1);
-    return device.download<FilmPixel>(film, 1).front();
+    return device.download<MeasuredPixel>(film, 1).front();
+}
+
+/// The scatter about the mean of what pixel_with() is given, in double precision.
+double expected_scatter(const PixelSamples &samples) {
+    double count = 0, sum = 0, squares = 0; // of distances from `base`
+    const auto add = [&](float value, double times) {
+        const double distance = double{value} - double{samples.base};
+        count += times;
+        sum += times * distance;
+        squares += times * distance * distance;
+    };
+    add(samples.first, 1);
+    for (cl_uint b = 0; CLR_BLOCK_START(b) < samples.count; ++b) {
+        const cl_uint start = CLR_BLOCK_START(b);
+        const cl_uint size = std::min(CLR_BLOCK_START(b + 1), samples.count) - start;
+        const float middle = b % 2 == 0 ? samples.base : samples.other;
+        add(middle + samples.step, (size + 1) / 2 - (start == 0 ? 1 : 0));
+        add(middle - samples.step, size / 2);
+    }
+    return squares - sum * sum / count;
+}
+
+double scatter_of(const MeasuredPixel &pixel, int channel, int exponent = 0) {
+    const FilmUnits units(exponent);
+    const PixelSums sums(pixel.sums, units);
+    return PixelMoments(pixel.moments, units).scatter(channel, sums.mean(channel));
 }
 
 } // namespace
@@ -135,18 +167,17 @@ TEST_CASE("constants over 2^26 samples add up to 1e-6, and have no variance") {
     const ClTestDevice device;
     constexpr cl_uint samples = 1U << 26U;
     for (const float value : {1.0f, 0.1f}) {
-        const FilmPixel pixel = add_pixel_samples(device, samples, value, value, 0);
+        const MeasuredPixel pixel = pixel_with(device, {samples, value, value, 0, value});
         const FilmUnits units(0);
-        const PixelSums sums(pixel, units);
-        const double mean = sums.colour(0) / sums.weight();
+        const PixelSums sums(pixel.sums, units);
         CHECK(sums.weight() == samples);
-        CHECK(pixel.samples == samples);
-        CHECK(pixel.clamped == 0);
-        CAPTURE(value, mean);
-        CHECK(std::abs(mean / double{value} - 1) <= 1e-6);
-        // A device that contracts a product and a sum leaves the rounding of the product.
+        CHECK(sums.samples() == samples);
+        CHECK(pixel.sums.clamped == 0);
+        CAPTURE(value, sums.mean(0));
+        CHECK(std::abs(sums.mean(0) / double{value} - 1) <= 1e-6);
+        // The mean is off by the rounding of a block's sum.
         for (int channel = 0; channel < 4; ++channel)
-            CHECK(sums.scatter(channel) <= 0x1p-48 * samples);
+            CHECK(scatter_of(pixel, channel) <= 0x1p-46 * samples);
     }
 }
 
@@ -154,34 +185,39 @@ TEST_CASE("a sample of 1e6 and 2^20 of 1e-3 add up to 1e-6") {
     const ClTestDevice device;
     constexpr cl_uint samples = (1U << 20U) + 1;
     constexpr int exponent = 20;
-    const FilmPixel pixel = add_pixel_samples(device, samples, 1e6f, 1e-3f, 0, exponent);
+    const MeasuredPixel pixel = pixel_with(device, {samples, 1e6f, 1e-3f, 0, 1e-3f, exponent});
     const double expected = 1e6 + (samples - 1) * double{1e-3f};
     const FilmUnits units(exponent);
-    const PixelSums sums(pixel, units);
+    const PixelSums sums(pixel.sums, units);
     CAPTURE(sums.colour(1), expected);
     CHECK(std::abs(sums.colour(1) / expected - 1) <= 1e-6);
-    // All of the scatter is the first sample's, in a block of 16.
-    CHECK(sums.scatter(1) == Approx(1e12).epsilon(1e-5));
-    CHECK(pixel.clamped == 0);
+    CHECK(scatter_of(pixel, 1, exponent) == Approx(1e12).epsilon(1e-5));
+    CHECK(pixel.sums.clamped == 0);
 }
 
 TEST_CASE("the scatter of samples is right to 1% from a deviation of 1e-3 of the mean on") {
     const ClTestDevice device;
-    for (const cl_uint samples : {16U, 100U, 1U << 26U}) {
+    for (const cl_uint count : {16U, 100U, 1U << 26U}) {
         for (const float step : {1e-4f, 0.03f, 0.1f}) {
             constexpr float base = 0.1f;
-            const float low = base - step, high = base + step;
-            const FilmPixel pixel = add_pixel_samples(device, samples, high, base, step);
-            // Half of each block lies half the difference above, half below its mean.
-            const double half = (double{high} - double{low}) / 2;
-            double expected = 0;
-            for (cl_uint b = 0; CLR_BLOCK_START(b) < samples; ++b) {
-                const double n = std::min(CLR_BLOCK_START(b + 1), samples) - CLR_BLOCK_START(b);
-                expected += n * n / (n - 1) * half * half;
-            }
-            const FilmUnits units(0);
-            const double scatter = PixelSums(pixel, units).scatter(2);
-            CAPTURE(samples, step, scatter, expected);
+            const PixelSamples samples{count, base + step, base, step, base};
+            const double scatter = scatter_of(pixel_with(device, samples), 2);
+            const double expected = expected_scatter(samples);
+            CAPTURE(count, step, scatter, expected);
+            CHECK(std::abs(scatter / expected - 1) <= 0.01);
+        }
+    }
+}
+
+TEST_CASE("samples scatter about the mean of all blocks") {
+    // As where two tiles share a pixel at an edge: each block alone has next to no scatter.
+    const ClTestDevice device;
+    for (const cl_uint count : {32U, 1000U}) {
+        for (const float other : {0.1002f, 0.2f, 1e4f}) {
+            const PixelSamples samples{count, 0.1f, 0.1f, 1e-6f, other};
+            const double scatter = scatter_of(pixel_with(device, samples), 0);
+            const double expected = expected_scatter(samples);
+            CAPTURE(count, other, scatter, expected);
             CHECK(std::abs(scatter / expected - 1) <= 0.01);
         }
     }

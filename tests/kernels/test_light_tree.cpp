@@ -1,7 +1,7 @@
 /// The light tree on the device: what it chooses, and that both ways to a probability agree.
 
 #include "cl_test_device.h"
-#include "device/kernel_config.h"
+#include "config/kernel_config.h"
 #include "flatten/light_tree.h"
 
 #include <catch2/catch.hpp>
@@ -21,7 +21,7 @@ struct Choices {
 std::string options_for(int lanes, bool oriented) {
     KernelConfig config;
     config.LANES = lanes;
-    config.LIGHT_COUNT = -1;
+    config.LIGHT_COUNT = CLR_MANY_LIGHTS;
     config.HAS_ORIENTED_LIGHTS = oriented ? 1 : 0;
     return config.build_options();
 }

@@ -1,7 +1,7 @@
 /// The functions of kernels/math.clh against those of the C++ library in long double.
 
 #include "cl_test_device.h"
-#include "device/kernel_config.h"
+#include "config/kernel_config.h"
 #include "selftest/check.h"
 
 #include <catch2/catch.hpp>

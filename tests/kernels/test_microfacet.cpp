@@ -2,7 +2,7 @@
 /// density.
 
 #include "cl_test_device.h"
-#include "device/kernel_config.h"
+#include "config/kernel_config.h"
 #include "microfacet_oracle.h"
 #include "selftest/check.h"
 #include "sphere_cells.h"

@@ -2,6 +2,7 @@
 /// pairs know nothing of each other.
 
 #include "cl_test_device.h"
+#include "shared/config_values.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,7 +21,8 @@ struct Request {
 
 /// u and v of each, one after the other.
 std::vector<float> pairs(const ClTestDevice &device, const Request &r, int lanes = 8,
-                         int sampler = 0, const char *probe = "probe_sampler_pair") {
+                         int sampler = CLR_SAMPLER_SOBOL,
+                         const char *probe = "probe_sampler_pair") {
     const std::string options =
         "-DLANES=" + std::to_string(lanes) + " -DSAMPLER=" + std::to_string(sampler);
     cl::Kernel kernel(device.build("probes/sampler_probes.cl", options), probe);
@@ -93,7 +95,7 @@ TEST_CASE("pairs are the same at every width", "[oclgrind]") {
 
 TEST_CASE("the n-th samples of all pixels fill the square evenly") {
     const ClTestDevice device;
-    for (const int sampler : {0, 1})
+    for (const int sampler : {CLR_SAMPLER_SOBOL, CLR_SAMPLER_INDEPENDENT})
         for (const cl_uint sample : {0u, 1u, 63u}) {
             const auto p = pairs(device, {0, sample, 1, 8, 1u << 16}, 8, sampler);
             std::vector<double> u, v;
@@ -114,7 +116,7 @@ TEST_CASE("numbers of different pairs, and of neighbouring pixels, do not go tog
     const auto other_pair = pairs(device, {0, 0, 16, 6, 1u << 16});
     const auto next_pixel = pairs(device, {1, 0, 16, 4, 1u << 16});
     for (const std::size_t mine : {0, 1})
-        for (const std::size_t theirs : {0, 1}) {
+        for (const std::size_t theirs : {CLR_SAMPLER_SOBOL, CLR_SAMPLER_INDEPENDENT}) {
             std::vector<double> x, y, z;
             for (std::size_t i = 0; i < a.size(); i += 2) {
                 x.push_back(a[i + mine]);
@@ -130,7 +132,7 @@ TEST_CASE("single numbers of a pixel's samples are independent from dimension to
     const ClTestDevice device;
     constexpr std::size_t pixels = 1024, samples = 64;
     const auto turns = [](double u) { return std::cos(2 * M_PI * u); };
-    for (const int sampler : {0, 1}) {
+    for (const int sampler : {CLR_SAMPLER_SOBOL, CLR_SAMPLER_INDEPENDENT}) {
         const auto numbers = [&](cl_uint dimension) {
             return pairs(device, {77, 0, samples, dimension, pixels * samples}, 8, sampler,
                          "probe_sampler_two");

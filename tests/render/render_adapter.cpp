@@ -15,11 +15,11 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.seed = how.seed;
     options.lanes = how.lanes;
     options.double_precision = how.double_precision;
-    options.pixel_centers = how.pixel_centers;
-    options.independent_sampler = !how.sobol;
-    options.light_samples = how.light_samples;
-    options.strategy = how.strategy;
-    options.generality = how.generality;
+    options.sampling.pixel_centers = how.pixel_centers;
+    options.sampling.independent_sampler = !how.sobol;
+    options.sampling.light_samples = how.light_samples;
+    options.sampling.strategy = how.strategy;
+    options.sampling.forced_features = how.forced_features;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;
     options.band_rows = how.band_rows;

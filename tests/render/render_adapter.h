@@ -1,7 +1,7 @@
 #pragma once
 /// The one place of these tests that knows how a scene is rendered.
 
-#include "device/kernel_config.h"
+#include "config/sampling_options.h"
 #include "z_test.h"
 
 #include "scene/load_scene.h"
@@ -19,12 +19,12 @@ struct TestRender {
     int lanes = 0; ///< 0: as wide as the device
     bool double_precision = false;
     bool pixel_centers = false;
-    int batch_blocks = 0;                  ///< as in RenderOptions
-    int tile_items = 0;                    ///< as in RenderOptions
-    int band_rows = 0;                     ///< as in RenderOptions
-    bool preview = false;                  ///< as in RenderOptions
-    std::set<std::string> generality = {}; ///< as in RenderOptions
-    int light_samples = 0;                 ///< as in RenderOptions
+    int batch_blocks = 0;                ///< as in RenderOptions
+    int tile_items = 0;                  ///< as in RenderOptions
+    int band_rows = 0;                   ///< as in RenderOptions
+    bool preview = false;                ///< as in RenderOptions
+    ForcedFeatures forced_features = {}; ///< as in RenderOptions
+    int light_samples = 0;               ///< as in RenderOptions
     Strategy strategy = Strategy::mis;
     bool sobol = false; ///< independent samples, whose variance is what it looks like, if not
 };

@@ -189,7 +189,7 @@ TEST_CASE("figures: a mesh looks the same to the bit with the hierarchy and with
     RenderOptions options;
     options.spp = 4;
     const RenderResult with = render_scene(scene, options);
-    options.brute_force = true;
+    options.sampling.brute_force = true;
     const RenderResult without = render_scene(scene, options);
     CHECK(with.stats.triangles > 10000);
     CHECK(with.image.f32 == without.image.f32);

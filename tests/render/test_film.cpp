@@ -111,7 +111,7 @@ TEST_CASE("the stated error is that between seeds, with independent and with Sob
                 RenderOptions options;
                 options.spp = spp;
                 options.seed = 50 + run;
-                options.independent_sampler = independent;
+                options.sampling.independent_sampler = independent;
                 options.with_variance = true;
                 const RenderResult result = render_scene(scene, options);
                 stated += result.error.relative_variance / runs;

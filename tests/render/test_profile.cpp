@@ -34,7 +34,7 @@ RenderResult render(Profile *profile, int lanes = 0, bool brute_force = false) {
     RenderOptions options;
     options.spp = spp;
     options.lanes = lanes;
-    options.brute_force = brute_force;
+    options.sampling.brute_force = brute_force;
     options.profile = profile;
     return render_scene(scene_from_xml(mesh_scene), options);
 }

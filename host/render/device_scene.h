@@ -1,7 +1,7 @@
 #pragma once
 /// The flat scene in device memory: the only place that uploads.
 
-#include "cl_context.h"
+#include "device/cl_context.h"
 #include "flatten/flat_scene.h"
 
 namespace clrender::inline CLR_PRECISION {

@@ -1,16 +1,11 @@
 #pragma once
 /// The values the kernel is specialised on, one field for each line of kernel_config.def.
 
+#include "shared/config_values.h"
+
 #include <string>
 
 namespace clrender {
-
-/// How light is looked for: KernelConfig::STRATEGY.
-enum class Strategy {
-    mis = 0,   ///< light and BSDF sampling, by multiple importance sampling
-    light = 1, ///< light sampling alone
-    bsdf = 2,  ///< BSDF sampling alone
-};
 
 struct KernelConfig {
 #define CLR_CONFIG(name, value, meaning) int name = value;

@@ -1,6 +1,6 @@
 #include "device_scene.h"
 
-#include "upload.h"
+#include "device/upload.h"
 
 #include <algorithm>
 #include <cstddef>

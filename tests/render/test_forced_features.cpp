@@ -3,8 +3,8 @@
 #include "render_adapter.h"
 
 #include "film/metrics.h"
+#include "flatten/config_of.h"
 #include "flatten/flat_scene.h"
-#include "flatten/generality.h"
 
 #include <catch2/catch.hpp>
 
@@ -15,9 +15,9 @@ namespace {
 
 /// The same samples: what differs is rounding, and the few paths that it sends elsewhere.
 void check_same(const std::string &name, const Scene &scene, const TestRender &own,
-                const Generality &generality) {
+                const ForcedFeatures &features) {
     TestRender general = own;
-    general.generality = generality;
+    general.forced_features = features;
     const auto a = render_measured(scene, own);
     const auto b = render_measured(scene, general);
     const auto verdict = compare_or_save(name, a, b);
@@ -35,7 +35,7 @@ TEST_CASE("a kernel that can do everything gives the same picture") {
                  "conductors", "texture_shapes", "envmap_sun", "camera_thinlens", "distance");
     INFO(name);
     const Scene scene = load_scene(std::string(CLRENDER_TEST_DIR) + "/references/" + name + ".xml");
-    check_same("everything " + name, scene, {.spp = 16, .lanes = 4}, full_generality());
+    check_same("everything " + name, scene, {.spp = 16, .lanes = 4}, all_features());
 }
 
 TEST_CASE("a kernel that can do one thing more gives the same picture") {
@@ -48,7 +48,7 @@ TEST_CASE("a kernel that can do one thing more gives the same picture") {
         </sensor>
         <shape type="sphere"/>
         <emitter type="constant"><rgb name="radiance" value=".2 .4 .6"/></emitter>)");
-    for (const std::string &name : full_generality()) {
+    for (const std::string &name : all_features()) {
         INFO(name);
         check_same(name, scene, {.spp = 16, .lanes = 1}, {name});
     }
@@ -75,10 +75,10 @@ TEST_CASE("walls that are left out of shadow tests change no bit") {
             <rotate y="1" angle="50"/><translate x="-1.1" z="-.7"/></transform></shape>
         <emitter type="point"><point name="position" x="-1.1" y="1.2" z="-.7"/></emitter>)")};
     const Scene &scene = scenes[GENERATE(range(0, 6))];
-    CHECK(flatten(scene, {}).config.SHADOWLESS_PLANAR_COUNT > 0);
+    CHECK(config_of(flatten(scene), {}).SHADOWLESS_PLANAR_COUNT > 0);
     const TestRender without{.spp = 16, .lanes = 8};
     TestRender with = without;
-    with.generality = {"SHADOWLESS_PLANAR_COUNT"};
+    with.forced_features = {"SHADOWLESS_PLANAR_COUNT"};
     const Image a = render_measured(scene, without).mean;
     const Image b = render_measured(scene, with).mean;
     CHECK(a.f32 == b.f32);
@@ -113,7 +113,7 @@ TEST_CASE("rectangles across an axis are met where others are, with the same coo
         <emitter type="point"><point name="position" x="0" y=".3" z="1"/></emitter>)" +
                                        shapes);
     int across = 0;
-    const int axes = flatten(scene, {}).config.PLANAR_AXES;
+    const int axes = config_of(flatten(scene), {}).PLANAR_AXES;
     for (int i = 0; i < 7; ++i)
         across += (axes >> 2 * i & 3) != 0 ? 1 : 0;
     CHECK(across == 6);
