@@ -92,7 +92,7 @@ enum {
 #define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
 #define CLR_BSDF_SHADOWS_NORMALS 0x1000u
 #define CLR_BSDF_NONLINEAR 0x4000u /* plastic whose hue changes with each reflection inside */
-#define CLR_BSDF_MIRRORED 0x2000u /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_MIRRORED 0x2000u  /* shown by `twosided` on the back of the surface */
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
