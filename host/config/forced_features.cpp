@@ -36,6 +36,7 @@ const std::map<std::string, Setting> &settings() {
 #include "shared/bsdf_list.def"
         CLR_SETTING(HAS_GGX, 1),
         CLR_SETTING(HAS_BECKMANN, 1),
+        CLR_SETTING(HAS_SMOOTH_TRANSMISSION, 1),
         CLR_SETTING(HAS_TANGENTS, 1),
         CLR_SETTING(BSDF_PARAMETERS, CLR_MOST_BSDF_PARAMETERS),
         CLR_SETTING(BSDF_TEXTURED, (1 << CLR_MOST_BSDF_PARAMETERS) - 1),

@@ -10,6 +10,7 @@ uint burley_flags(const MaterialPacker &packer, int anisotropic) {
 
 PackedBsdf pack_bsdf(MaterialPacker &packer, const PrincipledBsdf &bsdf, BsdfSide) {
     PackedBsdf packed(CLR_BSDF_PRINCIPLED | burley_flags(packer, bsdf.anisotropic));
+    packed.material.kind |= bsdf.spec_trans == none ? 0U : CLR_BSDF_TRANSMITS;
     packed.parameters.resize(CLR_PRINCIPLED_PARAMETERS);
     const auto set = [&](int parameter, int texture, const Rgb &absent = Rgb{0.0}) {
         packed.parameters[static_cast<std::size_t>(parameter)] = packer.colour(texture, absent);

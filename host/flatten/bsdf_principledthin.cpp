@@ -3,7 +3,8 @@
 namespace clrender::inline CLR_PRECISION {
 
 PackedBsdf pack_bsdf(MaterialPacker &packer, const PrincipledThinBsdf &bsdf, BsdfSide) {
-    PackedBsdf packed(CLR_BSDF_PRINCIPLEDTHIN | burley_flags(packer, bsdf.anisotropic));
+    PackedBsdf packed(CLR_BSDF_PRINCIPLEDTHIN | CLR_BSDF_TRANSMITS |
+                      burley_flags(packer, bsdf.anisotropic));
     packed.parameters.resize(CLR_PRINCIPLEDTHIN_PARAMETERS);
     const auto set = [&](int parameter, int texture) {
         packed.parameters[static_cast<std::size_t>(parameter)] = packer.colour(texture, Rgb{0.5});

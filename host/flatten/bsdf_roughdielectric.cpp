@@ -3,7 +3,7 @@
 namespace clrender::inline CLR_PRECISION {
 
 PackedBsdf pack_bsdf(MaterialPacker &packer, const RoughDielectricBsdf &bsdf, BsdfSide) {
-    PackedBsdf packed(CLR_BSDF_ROUGHDIELECTRIC | flags_of(bsdf.microfacets));
+    PackedBsdf packed(CLR_BSDF_ROUGHDIELECTRIC | CLR_BSDF_TRANSMITS | flags_of(bsdf.microfacets));
     packed.parameters.resize(CLR_ROUGHDIELECTRIC_PARAMETERS);
     packed.parameters[CLR_ROUGHDIELECTRIC_ALPHA_U] = packer.colour(bsdf.microfacets.alpha_u);
     packed.parameters[CLR_ROUGHDIELECTRIC_ALPHA_V] = packer.colour(bsdf.microfacets.alpha_v);

@@ -77,6 +77,7 @@ void set_materials(const FlatScene &flat, KernelConfig &config) {
 #define CLR_BSDF(KIND, kind, width, lobes, meaning) config.HAS_##KIND = has_kind(CLR_BSDF_##KIND);
 #define CLR_BSDF_NODE(KIND, meaning) config.HAS_##KIND = has_kind(CLR_BSDF_##KIND);
 #include "shared/bsdf_list.def"
+    config.HAS_SMOOTH_TRANSMISSION = has_flag(CLR_BSDF_TRANSMITS);
     config.HAS_TANGENTS = has_flag(CLR_BSDF_TANGENTS);
     config.HAS_BECKMANN = has_flag(CLR_BSDF_BECKMANN);
     config.HAS_GGX = has_flag(CLR_BSDF_GGX);

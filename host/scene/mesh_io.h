@@ -3,6 +3,7 @@
 
 #include "scene.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,21 +20,33 @@ struct ObjPart {
     Mesh mesh;
 };
 
-/// What an MTL file says of a material, as far as we render it.
+/// A texture of an MTL file.
+struct ObjMap {
+    std::string file;      ///< path of a file that is there; "" if none
+    SourceLocation where;  ///< the line that names it
+    glm::dmat3 to_uv{1.0}; ///< as Texture::to_uv
+    bool is_clamped = false;
+    double scale = 1; ///< -bm, of bump maps
+
+    [[nodiscard]] bool is_there() const { return !file.empty(); }
+};
+
+/// What an MTL file says of a material, as far as we render it, with the extension for physically
+/// based rendering (Pr, Pm, Ps, Pc, Pcr, aniso, norm).
 struct ObjMaterial {
     std::string name; ///< words with one blank in between
     Rgb diffuse{0.5};
-    std::string diffuse_map;   ///< path of a file that is there; "" if none
-    SourceLocation where_map;  ///< the line that names it
-    glm::dmat3 map_to_uv{1.0}; ///< as Texture::to_uv
-    bool is_map_clamped = false;
     Rgb specular{0.0}, emission{0.0};
-    double ior = 1.5, dissolve = 1;
+    std::optional<double> exponent, ior; ///< Ns, Ni
+    double dissolve = 1;
     int illum = 2;
+    std::optional<double> roughness, metallic, sheen, clearcoat, clearcoat_roughness, anisotropy;
+    ObjMap diffuse_map, opacity_map, normal_map, bump_map;
+    ObjMap roughness_map, metallic_map, sheen_map;
 };
 
-/// The one kind of surface that a material is rendered as.
-enum class ObjSurface { diffuse, mirror, glass };
+/// The kind of surface that a material is rendered as.
+enum class ObjSurface { diffuse, mirror, rough_metal, glass, glossy, principled };
 ObjSurface surface_of(const ObjMaterial &material);
 
 struct ObjFile {

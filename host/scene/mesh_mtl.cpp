@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <istream>
+#include <map>
 #include <optional>
 
 namespace clrender {
@@ -35,6 +36,38 @@ double brightest(const Rgb &color) {
     return std::max({color.r, color.g, color.b});
 }
 
+/// A statement that names a texture, and what the material has where that is not there.
+struct MapStatement {
+    ObjMap ObjMaterial::*member;
+    std::string without;
+};
+
+const std::map<std::string, MapStatement> &maps() {
+    static const std::map<std::string, MapStatement> all{
+        {"map_kd", {&ObjMaterial::diffuse_map, "its plain colour"}},
+        {"map_d", {&ObjMaterial::opacity_map, "no holes"}},
+        {"norm", {&ObjMaterial::normal_map, "smooth normals"}},
+        {"map_bump", {&ObjMaterial::bump_map, "no bumps"}},
+        {"bump", {&ObjMaterial::bump_map, "no bumps"}},
+        {"map_pr", {&ObjMaterial::roughness_map, "one roughness"}},
+        {"map_pm", {&ObjMaterial::metallic_map, "one share of metal"}},
+        {"map_ps", {&ObjMaterial::sheen_map, "one sheen"}}};
+    return all;
+}
+
+const std::map<std::string, std::optional<double> ObjMaterial::*> &numbers() {
+    static const std::map<std::string, std::optional<double> ObjMaterial::*> all{
+        {"ns", &ObjMaterial::exponent},
+        {"ni", &ObjMaterial::ior},
+        {"pr", &ObjMaterial::roughness},
+        {"pm", &ObjMaterial::metallic},
+        {"ps", &ObjMaterial::sheen},
+        {"pc", &ObjMaterial::clearcoat},
+        {"pcr", &ObjMaterial::clearcoat_roughness},
+        {"aniso", &ObjMaterial::anisotropy}};
+    return all;
+}
+
 /// Takes the lines of an MTL file one after the other; keywords count in any case.
 class MtlReader {
 public:
@@ -49,7 +82,7 @@ private:
     std::string take_statement(const std::string &keyword, const Words &words);
     std::string take_color(const std::string &keyword, const Words &words);
     std::string take_number(const std::string &keyword, const Words &words);
-    std::string take_map(const Words &words);
+    std::string take_map(const Words &words, ObjMap &target, const std::string &without);
     void begin_material(const std::string &name);
     void end_material();
     void ignore(const std::string &what);
@@ -94,15 +127,17 @@ std::string MtlReader::take(std::string &line) {
 }
 
 std::string MtlReader::take_statement(const std::string &keyword, const Words &words) {
-    if (keyword == "map_kd")
-        return take_map(words);
+    const auto map = maps().find(keyword);
+    if (map != maps().end())
+        return take_map(words, materials_.back().*map->second.member, map->second.without);
     if (keyword == "kd" || keyword == "ks" || keyword == "ke" || keyword == "kt" || keyword == "tf")
         return take_color(keyword, words);
-    if (keyword == "ni" || keyword == "d" || keyword == "tr" || keyword == "illum")
+    if (keyword == "d" || keyword == "tr" || keyword == "illum" ||
+        numbers().find(keyword) != numbers().end())
         return take_number(keyword, words);
 
-    // Ambient light is what path tracing computes; the exponent belongs to Ks.
-    if (keyword != "ka" && keyword != "ns" && keyword != "sharpness")
+    // Ambient light is what path tracing computes.
+    if (keyword != "ka" && keyword != "sharpness")
         ignore(std::string(words[0]));
     return {};
 }
@@ -152,8 +187,9 @@ std::string MtlReader::take_number(const std::string &keyword, const Words &word
         return reason;
     const double value = std::strtod(std::string(words[at]).c_str(), nullptr);
     ObjMaterial &material = materials_.back();
-    if (keyword == "ni") {
-        material.ior = value;
+    const auto number = numbers().find(keyword);
+    if (number != numbers().end()) {
+        material.*number->second = value;
     } else if (keyword == "illum") {
         material.illum = value >= 0 && value <= 10 ? static_cast<int>(value) : material.illum;
     } else if (keyword == "d") {
@@ -165,7 +201,7 @@ std::string MtlReader::take_number(const std::string &keyword, const Words &word
     return {};
 }
 
-std::string MtlReader::take_map(const Words &words) {
+std::string MtlReader::take_map(const Words &words, ObjMap &target, const std::string &without) {
     MtlMap map;
     if (std::string reason = parse_mtl_map({words.begin() + 1, words.end()}, map); !reason.empty())
         return std::string(words[0]) + ": " + reason;
@@ -173,23 +209,19 @@ std::string MtlReader::take_map(const Words &words) {
         ignore(std::string(words[0]) + " " + option);
 
     // Paths from other machines: the file may lie beside the materials.
-    ObjMaterial &material = materials_.back();
     const fs::path file = map.file;
     for (const fs::path &place : {folder_ / file, folder_ / file.filename()})
         if (is_file(place)) {
-            material.diffuse_map = place.string();
-            material.where_map = lines_.where();
-            material.is_map_clamped = map.is_clamped;
-
             // In the file, v counts from the bottom row of the picture; with us from the top.
-            material.map_to_uv = {{map.scale.x, 0, 0},
-                                  {0, map.scale.y, 0},
-                                  {map.offset.x, 1 - map.scale.y - map.offset.y, 1}};
+            target = {place.string(), lines_.where(),
+                      glm::dmat3({map.scale.x, 0, 0}, {0, map.scale.y, 0},
+                                 {map.offset.x, 1 - map.scale.y - map.offset.y, 1}),
+                      map.is_clamped, map.bump_scale};
             return {};
         }
     log::warn(lines_.where(), "the texture " + quoted_path(map.file) +
-                                  " is not there: the material " + clrender::quoted(material.name) +
-                                  " has its plain colour");
+                                  " is not there: the material " +
+                                  clrender::quoted(materials_.back().name) + " has " + without);
     return {};
 }
 
@@ -237,11 +269,18 @@ void MtlReader::warn_of_ignored() const {
 } // namespace
 
 ObjSurface surface_of(const ObjMaterial &m) {
-    if (m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9 || m.dissolve < 1)
+    if (m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9 || (m.dissolve < 1 && m.ior))
         return ObjSurface::glass;
-    const bool has_diffuse = brightest(m.diffuse) > 0.01 || !m.diffuse_map.empty();
+    if (m.roughness || m.metallic || m.sheen || m.clearcoat || m.roughness_map.is_there() ||
+        m.metallic_map.is_there() || m.sheen_map.is_there())
+        return ObjSurface::principled;
+    // Exponents from a thousand on are those of mirrors.
+    const bool is_rough = m.exponent && *m.exponent < 1000;
+    const bool has_diffuse = brightest(m.diffuse) > 0.01 || m.diffuse_map.is_there();
     if (m.illum == 5 || (!has_diffuse && brightest(m.specular) > 0.5))
-        return ObjSurface::mirror;
+        return m.illum != 5 && is_rough ? ObjSurface::rough_metal : ObjSurface::mirror;
+    if (m.illum >= 2 && m.exponent && brightest(m.specular) > 0)
+        return ObjSurface::glossy;
     return ObjSurface::diffuse;
 }
 

@@ -56,43 +56,157 @@ int add_bsdf(Scene &scene, const Bsdf &bsdf) {
     return static_cast<int>(scene.bsdfs.size()) - 1;
 }
 
-/// Diffuse on both sides: models are seldom closed.
-int add_diffuse(Scene &scene, int reflectance) {
-    const int side = add_bsdf(scene, {DiffuseBsdf{reflectance}, {}, {}});
+/// The same on both sides: models are seldom closed.
+int add_twosided(Scene &scene, const BsdfModel &model) {
+    const int side = add_bsdf(scene, {model, {}, {}});
     return add_bsdf(scene, {TwosidedBsdf{side, side}, {}, {}});
+}
+
+int add_diffuse(Scene &scene, int reflectance) {
+    return add_twosided(scene, DiffuseBsdf{reflectance});
 }
 
 /// Textures that may turn out not to be readable, and the colour that then takes their place.
 using TextureColors = std::vector<std::pair<int, Rgb>>;
 
-int add_material(Scene &scene, const ObjMaterial &material, SceneFiles &files,
-                 TextureColors &colors) {
-    const auto reflectance = [](const Rgb &c) { return glm::clamp(c, 0.0, 1.0); };
-    Bsdf bsdf;
-    bsdf.id = material.name;
-    switch (surface_of(material)) {
-    case ObjSurface::glass:
-        bsdf.model = DielectricBsdf{{material.ior > 1 ? material.ior : 1.5, 1}};
-        return add_bsdf(scene, bsdf);
-    case ObjSurface::mirror:
-        bsdf.model = ConductorBsdf{add_color(scene, reflectance(material.specular))};
-        return add_bsdf(scene, bsdf);
-    case ObjSurface::diffuse:
-        break;
-    }
-    if (material.diffuse_map.empty())
-        return add_diffuse(scene, add_color(scene, reflectance(material.diffuse)));
-
-    Texture texture;
-    texture.kind = TextureKind::bitmap;
-    texture.to_uv = material.map_to_uv;
-    texture.wrap = material.is_map_clamped ? TextureWrap::clamp : TextureWrap::repeat;
-    texture.bitmap = files.image(material.diffuse_map, material.where_map, {.is_optional = true});
-    scene.textures.push_back(std::move(texture));
-    const int index = static_cast<int>(scene.textures.size()) - 1;
-    colors.emplace_back(index, reflectance(material.diffuse));
-    return add_diffuse(scene, index);
+Rgb reflectance(const Rgb &colour) {
+    return glm::clamp(colour, 0.0, 1.0);
 }
+
+/// Makes BSDFs of the materials of an MTL file.
+class MaterialMaker {
+public:
+    MaterialMaker(Scene &scene, SceneFiles &files, TextureColors &colors)
+        : scene_(scene), files_(files), colors_(colors) {}
+
+    /// The index of the BSDF; a new one for each call.
+    int add(const ObjMaterial &material) {
+        switch (surface_of(material)) {
+        case ObjSurface::glass: {
+            const double ior = material.ior.value_or(1.5);
+            return add_named(material, DielectricBsdf{{ior > 1 ? ior : 1.5, 1}});
+        }
+        case ObjSurface::mirror:
+            return add_named(material,
+                             ConductorBsdf{add_color(scene_, reflectance(material.specular))});
+        case ObjSurface::rough_metal:
+            return add_opaque(material, rough_metal(material));
+        case ObjSurface::glossy:
+            return add_opaque(material, glossy(material));
+        case ObjSurface::principled:
+            return add_opaque(material, principled(material));
+        case ObjSurface::diffuse:
+            break;
+        }
+        return add_opaque(material, DiffuseBsdf{diffuse(material)});
+    }
+
+private:
+    int add_named(const ObjMaterial &material, const BsdfModel &model) {
+        return add_bsdf(scene_, {model, material.name, {}});
+    }
+
+    /// A surface with its normals, on both sides, where the material is not cut out.
+    int add_opaque(const ObjMaterial &material, const BsdfModel &model) {
+        int side = add_named(material, model);
+        if (material.normal_map.is_there())
+            side = add_bsdf(
+                scene_, {NormalMapBsdf{map(material.normal_map, Rgb(0.5, 0.5, 1), true), {}, side},
+                         {},
+                         {}});
+        else if (material.bump_map.is_there())
+            side = add_bsdf(
+                scene_,
+                {BumpMapBsdf{number(material.bump_map, 0), material.bump_map.scale, {}, side},
+                 {},
+                 {}});
+        const int both = add_bsdf(scene_, {TwosidedBsdf{side, side}, {}, {}});
+        if (material.opacity_map.is_there())
+            return add_bsdf(
+                scene_, {MaskBsdf{number(material.opacity_map, material.dissolve), both}, {}, {}});
+        if (material.dissolve >= 1)
+            return both;
+        const double opacity = std::max(material.dissolve, 0.0);
+        return add_bsdf(scene_, {MaskBsdf{add_color(scene_, Rgb(opacity)), both}, {}, {}});
+    }
+
+    /// Kd, or the texture in its place.
+    int diffuse(const ObjMaterial &material) {
+        const Rgb colour = reflectance(material.diffuse);
+        return material.diffuse_map.is_there() ? map(material.diffuse_map, colour, false)
+                                               : add_color(scene_, colour);
+    }
+
+    /// A texture, or `colour` where it cannot be read. Data are linear.
+    int map(const ObjMap &source, const Rgb &colour, bool is_data) {
+        Texture texture;
+        texture.kind = TextureKind::bitmap;
+        texture.to_uv = source.to_uv;
+        texture.raw = is_data;
+        texture.wrap = source.is_clamped ? TextureWrap::clamp : TextureWrap::repeat;
+        texture.bitmap = files_.image(source.file, source.where, {.is_optional = true});
+        scene_.textures.push_back(std::move(texture));
+        const int index = static_cast<int>(scene_.textures.size()) - 1;
+        colors_.emplace_back(index, colour);
+        return index;
+    }
+
+    int number(const ObjMap &source, double value) {
+        const int index = map(source, Rgb(value), true);
+        scene_.textures.back().is_number = true;
+        return index;
+    }
+
+    int number(const ObjMap &source, const std::optional<double> &value, double fallback) {
+        const double constant = std::clamp(value.value_or(fallback), 0.0, 1.0);
+        return source.is_there() ? number(source, constant) : add_color(scene_, Rgb(constant));
+    }
+
+    /// The roughness that resembles Phong's exponent (Walter et al. 2007, section 5.4).
+    static double alpha(const ObjMaterial &material) {
+        return std::sqrt(2 / (std::max(material.exponent.value_or(0), 0.0) + 2));
+    }
+
+    BsdfModel rough_metal(const ObjMaterial &material) {
+        RoughConductorBsdf bsdf;
+        bsdf.microfacets.alpha_u = bsdf.microfacets.alpha_v =
+            add_color(scene_, Rgb(alpha(material)));
+        bsdf.specular_reflectance = add_color(scene_, reflectance(material.specular));
+        return bsdf;
+    }
+
+    /// A boundary that reflects .08 Ks straight on, as modelling programs export their dielectrics.
+    BsdfModel glossy(const ObjMaterial &material) {
+        const Rgb specular = reflectance(material.specular);
+        const double strength = std::max({specular.r, specular.g, specular.b});
+        RoughPlasticBsdf bsdf;
+        const double root = std::sqrt(0.08 * strength);
+        bsdf.plastic.ior = {(1 + root) / (1 - root), 1};
+        bsdf.plastic.diffuse_reflectance = diffuse(material);
+        bsdf.plastic.specular_reflectance = add_color(scene_, specular / strength);
+        bsdf.alpha = alpha(material);
+        return bsdf;
+    }
+
+    BsdfModel principled(const ObjMaterial &material) {
+        PrincipledBsdf bsdf;
+        bsdf.base_color = diffuse(material);
+        bsdf.roughness = number(material.roughness_map, material.roughness,
+                                material.exponent ? std::sqrt(alpha(material)) : 0.5);
+        bsdf.metallic = number(material.metallic_map, material.metallic, 0);
+        bsdf.sheen = number(material.sheen_map, material.sheen, 0);
+        bsdf.anisotropic = number({}, material.anisotropy, 0);
+        bsdf.clearcoat = number({}, material.clearcoat, 0);
+        bsdf.clearcoat_gloss = number({}, 1 - material.clearcoat_roughness.value_or(0), 1);
+        bsdf.spec_tint = bsdf.sheen_tint = bsdf.flatness = add_color(scene_, Rgb(0));
+        bsdf.eta = material.ior && *material.ior > 1 ? *material.ior : 1.5;
+        return bsdf;
+    }
+
+    Scene &scene_;
+    SceneFiles &files_;
+    TextureColors &colors_;
+};
 
 /// Gives textures without a picture a plain colour.
 void replace_missing(Scene &scene, const TextureColors &colors) {
@@ -100,7 +214,9 @@ void replace_missing(Scene &scene, const TextureColors &colors) {
         Texture &texture = scene.textures[static_cast<std::size_t>(index)];
         if (texture.bitmap->width > 0)
             continue;
+        const bool is_number = texture.is_number;
         texture = Texture();
+        texture.is_number = is_number;
         texture.value = color;
     }
 }
@@ -138,13 +254,14 @@ void add_model(Scene &scene, ObjFile &model) {
     for (const ObjMaterial &material : model.materials)
         materials.try_emplace(material.name, &material);
 
+    MaterialMaker maker(scene, files, colors);
     std::map<std::string, int> bsdfs;
     const int default_bsdf = add_diffuse(scene, add_color(scene, Rgb(0.7, 0.66, 0.6)));
     for (ObjPart &part : model.parts) {
         const auto found = materials.find(part.material);
         const ObjMaterial *material = found == materials.end() ? nullptr : found->second;
         if (material != nullptr && bsdfs.count(part.material) == 0)
-            bsdfs[part.material] = add_material(scene, *material, files, colors);
+            bsdfs[part.material] = maker.add(*material);
         Shape &shape = add_shape(scene, ShapeKind::mesh, glm::dmat4(1.0),
                                  material ? bsdfs[part.material] : default_bsdf);
         shape.mesh = std::make_shared<const Mesh>(std::move(part.mesh));

@@ -41,8 +41,6 @@ bool says_nothing(std::string_view option, const std::vector<std::string_view> &
     if (option == "-t")
         return std::all_of(values.begin(), values.end(),
                            [](std::string_view v) { return number(v) == 0; });
-    if (option == "-bm")
-        return true; // of bump maps
     return option == "-cc" && values[0] == "off";
 }
 
@@ -53,6 +51,8 @@ void apply(std::string_view option, const std::vector<std::string_view> &values,
         take_vector(values, map.offset);
     else if (option == "-clamp")
         map.is_clamped = values[0] == "on";
+    else if (option == "-bm")
+        map.bump_scale = number(values[0]);
     else if (!says_nothing(option, values))
         map.ignored.emplace(option);
 }

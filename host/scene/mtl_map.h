@@ -14,6 +14,7 @@ struct MtlMap {
     std::string file;               ///< as written, with / for \, without quotes
     glm::dvec2 scale{1}, offset{0}; ///< -s, -o: looked up at scale * (u, v) + offset
     bool is_clamped = false;        ///< -clamp on
+    double bump_scale = 1;          ///< -bm
     std::set<std::string> ignored;  ///< options that change the picture, but are not rendered
 };
 

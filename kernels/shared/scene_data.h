@@ -91,6 +91,7 @@ enum {
 #define CLR_BSDF_TANGENTS 0x400u      /* the frame has to follow dp/du */
 #define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
 #define CLR_BSDF_SHADOWS_NORMALS 0x1000u
+#define CLR_BSDF_TRANSMITS 0x8000u /* a lobe that is no delta lies behind the surface */
 #define CLR_BSDF_NONLINEAR 0x4000u /* plastic whose hue changes with each reflection inside */
 #define CLR_BSDF_MIRRORED 0x2000u  /* shown by `twosided` on the back of the surface */
 

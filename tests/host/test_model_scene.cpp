@@ -49,8 +49,8 @@ TEST_CASE("the camera frames every vertex", "[model]") {
 TEST_CASE("MTL materials become BSDFs and lights", "[model]") {
     const Scene scene = load_model(data + "materials.obj");
     REQUIRE(scene.shapes.size() == 5);
-    const auto &clay = std::get<TwosidedBsdf>(
-        scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)].model);
+    const auto &clay =
+        std::get<TwosidedBsdf>(scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)].model);
     const auto &front =
         std::get<DiffuseBsdf>(scene.bsdfs[static_cast<std::size_t>(clay.front)].model);
     CHECK(scene.textures[static_cast<std::size_t>(front.reflectance)].value == Rgb(0.8, 0.1, 0.1));
@@ -61,11 +61,12 @@ TEST_CASE("MTL materials become BSDFs and lights", "[model]") {
 
 TEST_CASE("glass and mirrors from an MTL", "[model]") {
     const Scene scene = load_model(data + "glass.obj");
-    const auto model_of = [&](std::size_t shape) {
-        return scene.bsdfs[static_cast<std::size_t>(scene.shapes[shape].bsdf)].model;
-    };
-    CHECK(std::get<DielectricBsdf>(model_of(0)).ior.interior == 1.33);
-    CHECK(std::get<ConductorBsdf>(model_of(1)).perfect_mirror);
+    const auto &glass =
+        std::get<DielectricBsdf>(scene.bsdfs[static_cast<std::size_t>(scene.shapes[0].bsdf)].model);
+    CHECK(glass.ior.interior == 1.33);
+    const auto &mirror =
+        std::get<ConductorBsdf>(scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)].model);
+    CHECK(mirror.perfect_mirror);
 }
 
 TEST_CASE("textures of a model are read once, and checked", "[model]") {

@@ -1,7 +1,8 @@
 #pragma once
-/// Cells of the sphere of directions for chi-square tests of sampling routines: each hemisphere is
-/// divided around an axis of its own, where a density may have a peak, into rings whose widths grow
-/// with their distance from it, and sectors. Cells end at the horizon z = 0.
+/// Cells of the sphere of directions for chi-square tests of sampling routines, bounded by
+/// parallels and meridians: in each hemisphere they are narrow around a direction where a density
+/// may have a peak, and around the pole, and grow with their distance from both. They end at the
+/// horizon z = 0.
 
 #include <glm/glm.hpp>
 
@@ -17,26 +18,26 @@ public:
     /// that peaks have, in radians.
     SphereCells(const glm::dvec3 &upper, const glm::dvec3 &lower, double narrow);
 
-    [[nodiscard]] std::size_t count() const { return 2 * rings_.size() * sectors; }
+    [[nodiscard]] std::size_t count() const { return count_; }
 
     /// The cell that direction `d` is in.
     [[nodiscard]] std::size_t cell_of(const glm::dvec3 &d) const;
 
-    /// The integral of `density` (per solid angle) over each cell, to `tolerance` in each.
-    [[nodiscard]] std::vector<double>
-    integrate(const std::function<double(const glm::dvec3 &)> &density, double tolerance) const;
+    /// Densities per solid angle in many directions at once.
+    using Densities = std::function<std::vector<double>(const std::vector<glm::dvec3> &)>;
+
+    /// The integral of a density over each cell, to `tolerance` in each.
+    [[nodiscard]] std::vector<double> integrate(const Densities &densities, double tolerance) const;
 
 private:
-    static constexpr std::size_t sectors = 12;
-
-    /// A hemisphere's chart: an axis and two vectors across it.
-    struct Chart {
-        glm::dvec3 axis, s, t;
+    /// A hemisphere: limits of |z|, from 0 to 1, and of the azimuth in radians, a turn in all.
+    struct Grid {
+        std::vector<double> heights, azimuths;
+        std::size_t first = 0; ///< its cells are numbered from here on
     };
 
-    std::array<Chart, 2> charts_; ///< upper, lower
-    /// Upper ends of the rings in (1 - cosine) / 2, which is proportional to area; the last is 1.
-    std::vector<double> rings_;
+    std::array<Grid, 2> grids_; ///< upper, lower
+    std::size_t count_ = 0;
 };
 
 } // namespace clrender::test

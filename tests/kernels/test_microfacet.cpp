@@ -151,8 +151,13 @@ std::array<double, 2> chi_square(const MicrofacetOracle &oracle, const glm::dvec
     for (std::size_t i = 0; i < count; ++i)
         ++counts[cells.cell_of(
             {out[out_size * i + 3], out[out_size * i + 4], out[out_size * i + 5]})];
-    std::vector<double> expected =
-        cells.integrate([&](const glm::dvec3 &h) { return oracle.visible(wi, h); }, 1e-7);
+    const auto densities = [&](const std::vector<glm::dvec3> &normals) {
+        std::vector<double> values;
+        for (const glm::dvec3 &h : normals)
+            values.push_back(oracle.visible(wi, h));
+        return values;
+    };
+    std::vector<double> expected = cells.integrate(densities, 1e-7);
     const double integral = std::accumulate(expected.begin(), expected.end(), 0.0);
     for (double &value : expected)
         value *= static_cast<double>(count);
