@@ -98,7 +98,7 @@ TEST_CASE("an OBJ file splits by material", "[obj]") {
     CHECK(file.materials[2].emission == Rgb(4, 4, 4));
     CHECK(file.materials[3].illum == 5);
     CHECK(file.materials[4].diffuse == Rgb(0.5));
-    CHECK(file.materials[4].diffuse_map.empty());
+    CHECK(!file.materials[4].diffuse_map.is_there());
 }
 
 TEST_CASE("MTL errors name the MTL's line", "[obj]") {
