@@ -61,11 +61,12 @@ TEST_CASE("MTL materials become BSDFs and lights", "[model]") {
 
 TEST_CASE("glass and mirrors from an MTL", "[model]") {
     const Scene scene = load_model(data + "glass.obj");
-    const auto model_of = [&](std::size_t shape) {
-        return scene.bsdfs[static_cast<std::size_t>(scene.shapes[shape].bsdf)].model;
-    };
-    CHECK(std::get<DielectricBsdf>(model_of(0)).ior.interior == 1.33);
-    CHECK(std::get<ConductorBsdf>(model_of(1)).perfect_mirror);
+    const auto &glass =
+        std::get<DielectricBsdf>(scene.bsdfs[static_cast<std::size_t>(scene.shapes[0].bsdf)].model);
+    CHECK(glass.ior.interior == 1.33);
+    const auto &mirror =
+        std::get<ConductorBsdf>(scene.bsdfs[static_cast<std::size_t>(scene.shapes[1].bsdf)].model);
+    CHECK(mirror.perfect_mirror);
 }
 
 TEST_CASE("MTL gloss, roughness, holes and maps become BSDFs around each other", "[model]") {
