@@ -2,7 +2,7 @@
 /// The kernels' BSDFs (probes/bsdf_probes.cl) for tests.
 
 #include "cl_test_device.h"
-#include "device/kernel_config.h"
+#include "config/kernel_config.h"
 #include "shared/bsdf_parameters.h"
 #include "shared/scene_data.h"
 
