@@ -39,9 +39,7 @@ struct Builder {
         return static_cast<int>(scene.textures.size()) - 1;
     }
 
-    int diffuse(int texture) {
-        return add(DiffuseBsdf{texture});
-    }
+    int diffuse(int texture) { return add(DiffuseBsdf{texture}); }
 
     int add(const BsdfModel &model) {
         scene.bsdfs.push_back({model, {}, {}});
