@@ -3,7 +3,9 @@
 #include "kernel_config.h"
 #include "shared/bsdf_parameters.h"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 namespace clrender {
 
@@ -62,6 +64,20 @@ const std::map<std::string, Setting> &settings() {
     return table;
 }
 
+/// By feature: those that need it.
+const std::multimap<std::string, std::string> &dependents() {
+    static const std::multimap<std::string, std::string> table = {
+        {"HAS_UVS", "HAS_TANGENTS"},        {"HAS_TANGENTS", "HAS_BUMPMAP"},
+        {"HAS_TANGENTS", "HAS_NORMALMAP"},  {"HAS_GGX", "HAS_ROUGHCONDUCTOR"},
+        {"HAS_GGX", "HAS_ROUGHDIELECTRIC"}, {"HAS_GGX", "HAS_ROUGHPLASTIC"},
+        {"HAS_GGX", "HAS_PRINCIPLED"},      {"HAS_GGX", "HAS_PRINCIPLEDTHIN"},
+        {"BSDF_PARAMETERS", "HAS_GGX"},     {"BSDF_PARAMETERS", "HAS_BECKMANN"},
+        {"BSDF_PARAMETERS", "HAS_PLASTIC"}, {"BSDF_PARAMETERS", "HAS_THINDIELECTRIC"},
+        {"BSDF_PARAMETERS", "HAS_BLEND"},   {"BSDF_PARAMETERS", "HAS_TANGENTS"},
+    };
+    return table;
+}
+
 } // namespace
 
 const ForcedFeatures &all_features() {
@@ -75,9 +91,17 @@ const ForcedFeatures &all_features() {
     return all;
 }
 
+bool is_forced(const ForcedFeatures &features, const std::string &name) {
+    if (features.count(name) != 0)
+        return true;
+    const auto [first, last] = dependents().equal_range(name);
+    return std::any_of(first, last,
+                       [&](const auto &pair) { return is_forced(features, pair.second); });
+}
+
 void force_features(const ForcedFeatures &features, KernelConfig &config) {
     for (const auto &[name, setting] : settings())
-        if (features.count(name) != 0)
+        if (is_forced(features, name))
             config.*setting.field = setting.value;
 }
 

@@ -15,9 +15,12 @@ using ForcedFeatures = std::set<std::string>;
 /// (filter, sampler, integrator, hidden emitters) is not among it, nor is the width.
 const ForcedFeatures &all_features();
 
-/// Sets the fields of these names to what serves every scene. flatten() puts in what shifts
-/// indices (a sphere and a rectangle that no ray meets, lights without light) and the map of an
-/// environment that is none, which is why ENVIRONMENT is left to config_of().
+/// Whether a field is among them, or one of them does not compile without it.
+bool is_forced(const ForcedFeatures &features, const std::string &name);
+
+/// Sets the fields of these names, and what they need, to what serves every scene. flatten() puts
+/// in what shifts indices (a sphere and a rectangle that no ray meets, lights without light) and
+/// the map of an environment that is none, which is why ENVIRONMENT is left to config_of().
 void force_features(const ForcedFeatures &features, KernelConfig &config);
 
 } // namespace clrender

@@ -12,8 +12,8 @@ namespace {
 
 /// Below this small pages do.
 constexpr std::size_t kLarge = std::size_t(4) << 20;
-/// Runtimes differ in whether they take buffers of a few bytes; and the largest record, a table of a
-/// rough plastic in double precision, has as many.
+/// Runtimes differ in whether they take buffers of a few bytes; and the largest record, a table of
+/// a rough plastic in double precision, has as many.
 constexpr std::size_t kLeast = 512;
 
 /// A processor's runtime maps the buffer where it lies; nobody has touched it yet.

@@ -30,12 +30,11 @@ struct Flattening {
 
     /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
     [[nodiscard]] bool wants(const char *name) const {
-        return options.forced_features.count(name) != 0;
+        return is_forced(options.forced_features, name);
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
     [[nodiscard]] bool needs_uvs() const {
-        return !flat.textures.empty() || flat.has_tangents() || wants("HAS_UVS") ||
-               wants("HAS_TANGENTS");
+        return !flat.textures.empty() || flat.has_tangents() || wants("HAS_UVS");
     }
 };
 

@@ -155,10 +155,10 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
                       entry_);
     tracer_->upload(stats_);
     stats_.seconds_upload = watch_.lap("upload");
-    picture_ = std::make_unique<Picture>(
-        tiles_of(flat_.frame, config_), format,
-        Picture::Layers{options_.with_variance, options_.with_samples}, flat_.frame.film_exponent,
-        tracer_->control_layout());
+    picture_ =
+        std::make_unique<Picture>(tiles_of(flat_.frame, config_), format,
+                                  Picture::Layers{options_.with_variance, options_.with_samples},
+                                  flat_.frame.film_exponent, tracer_->control_layout());
 }
 
 /// What the render decides of the frame.

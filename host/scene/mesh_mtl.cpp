@@ -240,7 +240,8 @@ void MtlReader::end_material() {
     if (!has_diffuse_ && has_other_color_)
         material.diffuse = Rgb(0);
     const ObjSurface surface = surface_of(material);
-    if (surface == ObjSurface::diffuse && brightest(material.specular) > 0)
+    const bool has_no_tint = surface == ObjSurface::diffuse || surface == ObjSurface::principled;
+    if (has_no_tint && brightest(material.specular) > 0)
         ignore("Ks");
     if (surface == ObjSurface::glass && transmittance_ && *transmittance_ != Rgb(0) &&
         *transmittance_ != Rgb(1))

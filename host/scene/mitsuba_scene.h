@@ -43,7 +43,7 @@ private:
     int add_constant(const Rgb &value);
     int read_texture(int object, SpectrumUse use);
     int read_bitmap(Properties &properties, SpectrumUse use);
-    int read_checkerboard(Properties &properties);
+    int read_checkerboard(Properties &properties, SpectrumUse use);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     int read_raw_constant(Properties &properties, SpectrumUse use);
     /// The colour or texture `name` of an object, or none.

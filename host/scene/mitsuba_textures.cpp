@@ -128,7 +128,7 @@ int SceneReader::read_texture(int object, SpectrumUse use) {
     if (type == "bitmap")
         index = read_bitmap(properties, use);
     else if (type == "checkerboard")
-        index = read_checkerboard(properties);
+        index = read_checkerboard(properties, use);
     else if (type == "rawconstant")
         index = read_raw_constant(properties, use);
     else if (type == "uniform" || type == "srgb" || type == "d65")
@@ -161,11 +161,13 @@ int SceneReader::read_bitmap(Properties &properties, SpectrumUse use) {
     return static_cast<int>(scene_.textures.size()) - 1;
 }
 
-int SceneReader::read_checkerboard(Properties &properties) {
+int SceneReader::read_checkerboard(Properties &properties, SpectrumUse use) {
+    const SpectrumUse use_of_squares =
+        use == SpectrumUse::number ? SpectrumUse::number : SpectrumUse::reflectance;
     Texture texture;
     texture.kind = TextureKind::checkerboard;
-    texture.color0 = read_constant(properties, "color0", SpectrumUse::reflectance, texture.color0);
-    texture.color1 = read_constant(properties, "color1", SpectrumUse::reflectance, texture.color1);
+    texture.color0 = read_constant(properties, "color0", use_of_squares, texture.color0);
+    texture.color1 = read_constant(properties, "color1", use_of_squares, texture.color1);
     texture.to_uv = properties.uv_transform("to_uv");
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;

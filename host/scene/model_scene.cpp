@@ -144,7 +144,8 @@ private:
         texture.to_uv = source.to_uv;
         texture.format.raw = is_data;
         texture.wrap = source.is_clamped ? TextureWrap::clamp : TextureWrap::repeat;
-        texture.bitmap = files_.image(source.file, source.where, {.is_optional = true});
+        texture.bitmap =
+            files_.image(source.file, source.where, {.raw = is_data, .is_optional = true});
         scene_.textures.push_back(std::move(texture));
         const int index = static_cast<int>(scene_.textures.size()) - 1;
         colors_.emplace_back(index, colour);

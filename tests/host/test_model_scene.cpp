@@ -69,6 +69,51 @@ TEST_CASE("glass and mirrors from an MTL", "[model]") {
     CHECK(mirror.perfect_mirror);
 }
 
+TEST_CASE("MTL gloss, roughness, holes and maps become BSDFs around each other", "[model]") {
+    const test::ScratchFolder folder;
+    std::string bytes(3 * sizeof(float), '\0');
+    (void)folder.file("t.pfm", "PF\n1 1\n-1\n" + bytes);
+    const std::string model =
+        folder.file("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    Scene scene;
+    const auto load = [&](const std::string &statements) {
+        (void)folder.file("m.mtl", "newmtl a\n" + statements);
+        scene = load_model(model);
+        return scene.bsdfs[static_cast<std::size_t>(scene.shapes[0].bsdf)].model;
+    };
+    const auto nested = [&](int bsdf) { return scene.bsdfs[static_cast<std::size_t>(bsdf)].model; };
+    const auto number = [&](int texture) {
+        return scene.textures[static_cast<std::size_t>(texture)].value.x;
+    };
+    const auto front = [&](const BsdfModel &both) {
+        return nested(std::get<TwosidedBsdf>(both).front);
+    };
+
+    const auto gloss = std::get<RoughPlasticBsdf>(front(load("Kd .5 .5 .5\nKs .5 .5 .5\nNs 98\n")));
+    CHECK(gloss.alpha == Approx(std::sqrt(0.02)));
+    const double eta = gloss.plastic.ior.interior;
+    CHECK((eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1)) == Approx(0.04));
+
+    const auto metal = std::get<RoughConductorBsdf>(front(load("Ks .9 .8 .6\nNs 6\n")));
+    CHECK(number(metal.microfacets.alpha_u) == Approx(0.5));
+    CHECK(std::holds_alternative<ConductorBsdf>(load("Ks .9 .8 .6\n")));
+
+    const auto physical = std::get<PrincipledBsdf>(
+        front(load("Kd .5 .5 .5\nPr .3\nPm 1\nPc .5\nPcr .2\naniso .4\nmap_Ps t.pfm\n")));
+    CHECK(number(physical.roughness) == 0.3);
+    CHECK(number(physical.metallic) == 1);
+    CHECK(number(physical.clearcoat_gloss) == 0.8);
+    CHECK(number(physical.anisotropic) == 0.4);
+    CHECK(scene.textures[static_cast<std::size_t>(physical.sheen)].is_number);
+
+    const auto holes = std::get<MaskBsdf>(load("Kd .5 .5 .5\nmap_d t.pfm\nnorm t.pfm\n"));
+    const auto bent = std::get<NormalMapBsdf>(front(nested(holes.nested)));
+    CHECK(std::holds_alternative<DiffuseBsdf>(nested(bent.nested)));
+    CHECK(number(std::get<MaskBsdf>(load("Kd .5 .5 .5\nd .25\n")).opacity) == 0.25);
+    const auto bumps = std::get<BumpMapBsdf>(front(load("Kd .5 .5 .5\nbump -bm 2 t.pfm\n")));
+    CHECK(bumps.scale == 2);
+}
+
 TEST_CASE("textures of a model are read once, and checked", "[model]") {
     const test::ScratchFolder folder;
     const std::string model = folder.file("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"

@@ -239,10 +239,10 @@ TEST_CASE("the options of map_Kd are done, or said", "[obj]") {
 
 TEST_CASE("MTL statements that are not rendered are said in one line", "[obj]") {
     const Model model =
-        load("newmtl red\nKa 1 1 1\nNs 10\nKd .9 .1 .1\nKs .5 .5 .5\nd 1\nTr 0\nillum 2\n"
-             "bump b.png\nmap_d d.png\nPr .5\nbump c.png\nmap_Ks s.png\nnorm n.png\n");
+        load("newmtl red\nKa 1 1 1\nNs 10\nKd .9 .1 .1\nKs .5 .5 .5\nd 1\nTr 0\nillum 1\n"
+             "refl b.png\nmap_Ns d.png\ndisp e.png\nrefl c.png\nmap_Ks s.png\n");
     CHECK(texture_of(model.scene).value == red);
-    CHECK(model.messages == "m.mtl:9: warning: not rendered: bump, map_d, Pr, map_Ks, norm, Ks\n");
+    CHECK(model.messages == "m.mtl:9: warning: not rendered: refl, map_Ns, disp, map_Ks, Ks\n");
     CHECK(load("newmtl red\nKa 1 1 1\nKd .9 .1 .1\nKs 0 0 0\nNi 1.45\nNs 250\nd 1\nillum 2\n")
               .messages.empty());
     CHECK(has(load("newmtl red\nKd spectral a.rfl\n").messages, "not rendered: Kd spectral"));
@@ -261,7 +261,7 @@ TEST_CASE("MTL colours in all their forms", "[obj]") {
     const Rgb white = colour("Kd xyz .9505 1 1.089");
     for (int c = 0; c < 3; ++c)
         CHECK(white[c] == Approx(1).epsilon(1e-3));
-    const Model halo = load("newmtl red\nKd 1 1 1\nd -halo .5\n");
+    const Model halo = load("newmtl red\nKd 1 1 1\nNi 1.5\nd -halo .5\n");
     CHECK(std::holds_alternative<DielectricBsdf>(
         halo.scene.bsdfs.at(static_cast<std::size_t>(halo.scene.shapes.at(0).bsdf)).model));
     for (const char *bad : {"Kd", "Kd x", "Ni", "Tr one", "Kd xyz", "illum two"})

@@ -10,8 +10,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-constexpr int levels = 9;         ///< of quarters in quarters, at most
-constexpr int certain_levels = 1; ///< of all cells
+constexpr int levels = 9; ///< of quarters in quarters, at most
 
 /// A part of a cell, and what was found for its integral before.
 struct Part {
@@ -99,7 +98,8 @@ std::size_t SphereCells::cell_of(const glm::dvec3 &d) const {
            interval_of(grid.azimuths, azimuth);
 }
 
-std::vector<double> SphereCells::integrate(const Densities &densities, double tolerance) const {
+std::vector<double> SphereCells::integrate(const Densities &densities, double tolerance,
+                                           int certain_levels) const {
     std::vector<Part> parts;
     for (const Grid &grid : grids_)
         for (std::size_t i = 0; i + 1 < grid.heights.size(); ++i)

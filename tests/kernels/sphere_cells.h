@@ -26,8 +26,10 @@ public:
     /// Densities per solid angle in many directions at once.
     using Densities = std::function<std::vector<double>(const std::vector<glm::dvec3> &)>;
 
-    /// The integral of a density over each cell, to `tolerance` in each.
-    [[nodiscard]] std::vector<double> integrate(const Densities &densities, double tolerance) const;
+    /// The integral of a density over each cell, to `tolerance` in each. All cells are divided
+    /// `certain_levels` times: more often where the density ends within cells.
+    [[nodiscard]] std::vector<double> integrate(const Densities &densities, double tolerance,
+                                                int certain_levels = 1) const;
 
 private:
     /// A hemisphere: limits of |z|, from 0 to 1, and of the azimuth in radians, a turn in all.

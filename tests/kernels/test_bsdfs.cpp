@@ -175,8 +175,9 @@ Tested principled(const Draw &draw) {
 }
 
 Tested principledthin(const Draw &draw) {
-    PrincipledThinOracle o{draw.colour(), draw.alpha(), draw.rate(), draw.rate(), draw.eta_of_sheet(),
-                           draw.rate(),   draw.rate(),  draw.rate(), draw.rate(), 2 * draw.rate()};
+    PrincipledThinOracle o{draw.colour(),       draw.alpha(),   draw.rate(), draw.rate(),
+                           draw.eta_of_sheet(), draw.rate(),    draw.rate(), draw.rate(),
+                           draw.rate(),         2 * draw.rate()};
     return {fmt::format("principledthin roughness {} anisotropic {} spec_trans {} eta {}",
                         o.roughness, o.anisotropic, o.spec_trans, o.eta),
             {CLR_BSDF_PRINCIPLEDTHIN | CLR_BSDF_GGX,

@@ -157,7 +157,7 @@ std::array<double, 2> chi_square(const MicrofacetOracle &oracle, const glm::dvec
             values.push_back(oracle.visible(wi, h));
         return values;
     };
-    std::vector<double> expected = cells.integrate(densities, 1e-7);
+    std::vector<double> expected = cells.integrate(densities, 1e-7, 3);
     const double integral = std::accumulate(expected.begin(), expected.end(), 0.0);
     for (double &value : expected)
         value *= static_cast<double>(count);

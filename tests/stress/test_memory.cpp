@@ -39,7 +39,8 @@ void check_refused(const ProgramResult &result, const std::string &part) {
 
 } // namespace
 
-TEST_CASE("the option --max-memory refuses pictures, meshes, scenes and films before they take memory") {
+TEST_CASE(
+    "the option --max-memory refuses pictures, meshes, scenes and films before they take memory") {
     const TempFolder folder;
     write_sparse_pfm(folder, "map.pfm", 8192);
     folder.write("map.xml", textured("map.pfm"));
