@@ -16,7 +16,8 @@ double dielectric_reflectance(double c, double eta);
 /// Reflectance of a conductor with index eta + i k, from Fresnel's complex amplitudes.
 double conductor_reflectance(double c, double eta, double k);
 
-/// The value times |wo.z| of all but delta lobes.
+/// The value times |wo.z| of all but delta lobes, for light that leaves along wi (`from` where that
+/// may be the back) and arrives from wo (`to`).
 struct RoughConductorOracle {
     MicrofacetOracle microfacets;
     glm::dvec3 eta{0}, k{1}, reflectance{1};
@@ -27,7 +28,7 @@ struct RoughDielectricOracle {
     MicrofacetOracle microfacets;
     double eta = 1.5; ///< interior over exterior
     glm::dvec3 reflectance{1}, transmittance{1};
-    [[nodiscard]] glm::dvec3 value(const glm::dvec3 &wi, const glm::dvec3 &wo) const;
+    [[nodiscard]] glm::dvec3 value(const glm::dvec3 &from, const glm::dvec3 &to) const;
 };
 
 /// A diffuse base under a smooth or rough boundary of reflectance `internal` from within, averaged
@@ -51,14 +52,14 @@ struct PrincipledOracle {
     double roughness = 0.5, anisotropic = 0, metallic = 0, spec_trans = 0, eta = 1.5;
     double spec_tint = 0, sheen = 0, sheen_tint = 0, flatness = 0, clearcoat = 0;
     double clearcoat_gloss = 0;
-    [[nodiscard]] glm::dvec3 value(const glm::dvec3 &wi, const glm::dvec3 &wo) const;
+    [[nodiscard]] glm::dvec3 value(const glm::dvec3 &from, const glm::dvec3 &to) const;
 };
 
 struct PrincipledThinOracle {
     glm::dvec3 base{0.5};
     double roughness = 0.5, anisotropic = 0, spec_trans = 0, eta = 1.5;
     double spec_tint = 0, sheen = 0, sheen_tint = 0, flatness = 0, diff_trans = 0;
-    [[nodiscard]] glm::dvec3 value(const glm::dvec3 &wi, const glm::dvec3 &wo) const;
+    [[nodiscard]] glm::dvec3 value(const glm::dvec3 &from, const glm::dvec3 &to) const;
 };
 
 } // namespace clrender::test

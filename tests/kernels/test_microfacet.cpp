@@ -153,6 +153,7 @@ std::array<double, 2> chi_square(const MicrofacetOracle &oracle, const glm::dvec
             {out[out_size * i + 3], out[out_size * i + 4], out[out_size * i + 5]})];
     const auto densities = [&](const std::vector<glm::dvec3> &normals) {
         std::vector<double> values;
+        values.reserve(normals.size());
         for (const glm::dvec3 &h : normals)
             values.push_back(oracle.visible(wi, h));
         return values;
