@@ -2,23 +2,38 @@
 
 #include <fmt/core.h>
 
+#include <array>
+
 namespace clrender {
+
+namespace {
+
+struct Field {
+    const char *name;
+    int KernelConfig::*value;
+};
+
+constexpr std::array fields{
+#define CLR_CONFIG(name, value, meaning) Field{#name, &KernelConfig::name},
+#include "shared/kernel_config.def"
+#undef CLR_CONFIG
+};
+
+} // namespace
 
 std::string KernelConfig::build_options() const {
     std::string options;
-#define CLR_CONFIG(name, value, meaning) options += fmt::format("-D" #name "={} ", name);
-#include "shared/kernel_config.def"
-#undef CLR_CONFIG
+    for (const Field &field : fields)
+        options += fmt::format("-D{}={} ", field.name, this->*field.value);
     return options;
 }
 
 std::string KernelConfig::describe() const {
+    static const KernelConfig defaults;
     std::string text;
-#define CLR_CONFIG(name, value, meaning)                                                           \
-    if (name != (value))                                                                           \
-        text += fmt::format("{}" #name "={}", text.empty() ? "" : " ", name);
-#include "shared/kernel_config.def"
-#undef CLR_CONFIG
+    for (const Field &field : fields)
+        if (this->*field.value != defaults.*field.value)
+            text += fmt::format("{}{}={}", text.empty() ? "" : " ", field.name, this->*field.value);
     return text;
 }
 
