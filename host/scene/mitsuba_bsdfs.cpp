@@ -75,6 +75,7 @@ std::vector<int> SceneReader::read_nested(Properties &properties, std::size_t co
                          properties.description() + " has " + std::to_string(children.size()) +
                              " nested BSDFs, expected " + (count == 1 ? "one" : "two"));
     std::vector<int> nested;
+    nested.reserve(children.size());
     for (const Child *child : children)
         nested.push_back(read_bsdf(child->object));
     return nested;
