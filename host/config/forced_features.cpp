@@ -67,13 +67,21 @@ const std::map<std::string, Setting> &settings() {
 /// By feature: those that need it.
 const std::multimap<std::string, std::string> &dependents() {
     static const std::multimap<std::string, std::string> table = {
-        {"HAS_UVS", "HAS_TANGENTS"},        {"HAS_TANGENTS", "HAS_BUMPMAP"},
-        {"HAS_TANGENTS", "HAS_NORMALMAP"},  {"HAS_GGX", "HAS_ROUGHCONDUCTOR"},
-        {"HAS_GGX", "HAS_ROUGHDIELECTRIC"}, {"HAS_GGX", "HAS_ROUGHPLASTIC"},
-        {"HAS_GGX", "HAS_PRINCIPLED"},      {"HAS_GGX", "HAS_PRINCIPLEDTHIN"},
-        {"BSDF_PARAMETERS", "HAS_GGX"},     {"BSDF_PARAMETERS", "HAS_BECKMANN"},
-        {"BSDF_PARAMETERS", "HAS_PLASTIC"}, {"BSDF_PARAMETERS", "HAS_THINDIELECTRIC"},
-        {"BSDF_PARAMETERS", "HAS_BLEND"},   {"BSDF_PARAMETERS", "HAS_TANGENTS"},
+        {"HAS_UVS", "HAS_TANGENTS"},
+        {"HAS_TANGENTS", "HAS_BUMPMAP"},
+        {"HAS_TANGENTS", "HAS_NORMALMAP"},
+        {"HAS_GGX", "HAS_ROUGHCONDUCTOR"},
+        {"HAS_GGX", "HAS_ROUGHDIELECTRIC"},
+        {"HAS_GGX", "HAS_ROUGHPLASTIC"},
+        {"HAS_GGX", "HAS_PRINCIPLED"},
+        {"HAS_GGX", "HAS_PRINCIPLEDTHIN"},
+        {"BSDF_PARAMETERS", "HAS_GGX"},
+        {"BSDF_PARAMETERS", "HAS_BECKMANN"},
+        {"BSDF_PARAMETERS", "HAS_PLASTIC"},
+        {"BSDF_PARAMETERS", "HAS_THINDIELECTRIC"},
+        {"BSDF_PARAMETERS", "HAS_BLEND"},
+        {"BSDF_PARAMETERS", "HAS_TANGENTS"},
+        {"BSDF_PARAMETERS", "HAS_SMOOTH_TRANSMISSION"},
     };
     return table;
 }

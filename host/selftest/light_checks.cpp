@@ -119,8 +119,8 @@ private:
         store(t.e2, size * random.direction());
         const glm::dvec3 across = glm::cross(vector(t.e1), vector(t.e2));
         t.smooth = smooth ? 1 : 0;
-        for (int c = 0; c < 3; ++c)
-            store(t.normals[c], glm::normalize(glm::normalize(across) + 0.3 * random.direction()));
+        for (auto &normal : t.normals)
+            store(normal, glm::normalize(glm::normalize(across) + 0.3 * random.direction()));
         light.prim = static_cast<uint>(flat.light_triangles.size());
         light.area = static_cast<float>(glm::length(across) / 2);
         flat.light_triangles.push_back(t);

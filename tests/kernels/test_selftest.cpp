@@ -71,7 +71,8 @@ TEST_CASE("device functions: a wrong kernel fails the check of the function that
          check_environment, "env_eval"},
         {"light.clh", "real drop = u1 * cap;", "real drop = u1 * u1 * cap;", check_lights,
          "light_sample_local"},
-        {"sampling.clh", "real r = sqrt(u2);", "real r = u2;", check_math, "sample_cosine"},
+        {"sampling.clh", "*cosine = sqrt(1.0f - u2);", "*cosine = 1.0f - u2;", check_math,
+         "sample_cosine"},
     };
     const char *number = std::getenv("CLRENDER_TEST_DEVICE");
     const DeviceEntry entry = choose_device(number != nullptr ? number : "0");

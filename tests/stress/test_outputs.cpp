@@ -60,7 +60,7 @@ TEST_CASE("A disk that fills costs only the files that do not fit") {
         run_clrender(folder.path(),
                      {"scene.xml", "-q", "-r", "640x480", "-s", "1", "-o", "large.pfm", "-o",
                       "small.jpg", "--stats", "stats.json", "--profile", "trace.json"},
-                     {}, file_limit(1 << 20));
+                     {}, file_limit(2 << 20));
     INFO(result.err);
     CHECK(result.exit_code == 4);
     CHECK(is_one_line(result.err));
@@ -76,8 +76,8 @@ TEST_CASE("A picture that fits nowhere is reported, and leaves nothing behind") 
     folder.write("scene.xml", lit_floor);
     REQUIRE(run_clrender(folder.path(), {"scene.xml", "-o", "warm.pfm"}).exit_code == 0);
     const ProgramResult result =
-        run_clrender(folder.path(), {"scene.xml", "-q", "-r", "640x480", "-s", "1", "-o", "a.pfm"},
-                     {{"TMPDIR", folder.path().string()}}, file_limit(1 << 20));
+        run_clrender(folder.path(), {"scene.xml", "-q", "-r", "1280x960", "-s", "1", "-o", "a.pfm"},
+                     {{"TMPDIR", folder.path().string()}}, file_limit(2 << 20));
     INFO(result.err);
     CHECK(result.exit_code == 4);
     CHECK(is_one_line(result.err));
