@@ -155,6 +155,7 @@ TEST_CASE("a packet finds what its rays find one by one, to the bit", "[oclgrind
 TEST_CASE("four boxes or primitives at once are tested as eight are, to the bit", "[oclgrind]") {
     // Blocks of all fillings: the padding behind the last primitive must not count.
     Random random(9);
+    std::size_t found = 0;
     for (const auto &[triangles, spheres] : {std::pair(300, 100), std::pair(5, 3)}) {
         const BvhScene scene = random_scene(random, triangles, spheres);
         const Bvh bvh = build_bvh(scene.triangles, scene.spheres);
@@ -166,9 +167,11 @@ TEST_CASE("four boxes or primitives at once are tested as eight are, to the bit"
                         << four[i].prim << " at " << four[i].t);
             REQUIRE(same_bits(eight[i], four[i]));
         }
-        CHECK(misses(eight) < rays.size());
+        // The few rays under Oclgrind may all miss the few primitives.
+        found += rays.size() - misses(eight);
         CHECK(probe_any(bvh, rays, 4) == probe_any(bvh, rays));
     }
+    CHECK(found > 0);
 }
 
 TEST_CASE("the weights of a hit give the point of the hit") {
