@@ -1,5 +1,7 @@
 #include "bsdf_packing.h"
 
+#include <algorithm>
+
 namespace clrender::inline CLR_PRECISION {
 
 PackedBsdf pack_bsdf(MaterialPacker &packer, const DielectricBsdf &bsdf, BsdfSide) {
@@ -7,8 +9,7 @@ PackedBsdf pack_bsdf(MaterialPacker &packer, const DielectricBsdf &bsdf, BsdfSid
     Material &m = packed.material;
     m.texture = flatten_texture(packer.work, bsdf.specular_reflectance, Rgb{1.0}, m.color);
     m.texture2 = flatten_texture(packer.work, bsdf.specular_transmittance, Rgb{1.0}, m.color2);
-    const double eta = bsdf.ior.interior / bsdf.ior.exterior;
-    store(m.eta, Rgb{eta, 1 / eta, 0});
+    std::copy_n(MaterialPacker::eta(bsdf.ior).value, 3, m.eta);
     return packed;
 }
 

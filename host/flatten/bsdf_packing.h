@@ -16,46 +16,6 @@ struct BsdfSide {
     bool back = false, mirrored = false;
 };
 
-/// Which sides of a BSDF scatter light.
-enum class BsdfSides {
-    front,
-    both,
-    by_children, ///< those of the BSDFs that it nests
-};
-template <typename Model> BsdfSides sides_of(const Model &) {
-    return BsdfSides::front;
-}
-inline BsdfSides sides_of(const DielectricBsdf &) {
-    return BsdfSides::both;
-}
-inline BsdfSides sides_of(const RoughDielectricBsdf &) {
-    return BsdfSides::both;
-}
-inline BsdfSides sides_of(const ThinDielectricBsdf &) {
-    return BsdfSides::both;
-}
-inline BsdfSides sides_of(const PrincipledBsdf &bsdf) {
-    return bsdf.spec_trans == none ? BsdfSides::front : BsdfSides::both;
-}
-inline BsdfSides sides_of(const PrincipledThinBsdf &) {
-    return BsdfSides::both;
-}
-inline BsdfSides sides_of(const NullBsdf &) {
-    return BsdfSides::both;
-}
-inline BsdfSides sides_of(const MaskBsdf &) {
-    return BsdfSides::by_children;
-}
-inline BsdfSides sides_of(const BlendBsdf &) {
-    return BsdfSides::by_children;
-}
-inline BsdfSides sides_of(const NormalMapBsdf &) {
-    return BsdfSides::by_children;
-}
-inline BsdfSides sides_of(const BumpMapBsdf &) {
-    return BsdfSides::by_children;
-}
-
 /// A material and what it has in the pool of parameters, in the order of bsdf_parameters.h.
 struct PackedBsdf {
     Material material{};

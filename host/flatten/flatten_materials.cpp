@@ -23,6 +23,13 @@ void share_dielectric_fields(FlatScene &flat) {
     }
 }
 
+/// Whether the sides are those of nested BSDFs.
+bool nests_bsdfs(const BsdfModel &model) {
+    return std::holds_alternative<MaskBsdf>(model) || std::holds_alternative<BlendBsdf>(model) ||
+           std::holds_alternative<NormalMapBsdf>(model) ||
+           std::holds_alternative<BumpMapBsdf>(model);
+}
+
 /// Lays the parameters of all materials out in the pool, as many for each.
 void fill_parameter_pool(const std::vector<PackedBsdf> &packed, Flattening &work) {
     FlatScene &flat = work.flat;
@@ -67,11 +74,11 @@ uint MaterialPacker::material_of(int bsdf, BsdfSide side) {
     if (const auto *twosided = std::get_if<TwosidedBsdf>(&model))
         return material_of(side.back ? twosided->back : twosided->front,
                            {false, side.mirrored || side.back});
-    const auto visible = std::visit([&](const auto &m) { return sides_of(m); }, model);
-    if (side.back && visible == BsdfSides::front)
+    const bool nests = nests_bsdfs(model);
+    if (side.back && !nests && !lets_light_through(work.scene, bsdf))
         return CLR_NO_MATERIAL;
     // Leaves look at the frame alone, so that all sides share one material.
-    const BsdfSide key = visible == BsdfSides::by_children ? side : BsdfSide{};
+    const BsdfSide key = nests ? side : BsdfSide{};
     const auto [known, is_new] = index_.emplace(std::tuple(bsdf, key.back, key.mirrored), 0);
     if (!is_new)
         return known->second;

@@ -74,19 +74,22 @@ struct RoughPlasticBsdf {
     double alpha = 0.1;
 };
 
-/// Burley's principled BSDF. All indices but that of the base colour are of numbers.
-struct PrincipledBsdf {
-    int base_color = none, roughness = none, anisotropic = none, metallic = none;
-    int spec_trans = none; ///< none: nothing passes
+/// What both of Burley's BSDFs have. All indices but that of the base colour are of numbers.
+struct BurleyBsdf {
+    int base_color = none, roughness = none, anisotropic = none;
+    int spec_trans = none; ///< none, principled only: nothing passes
     int spec_tint = none, sheen = none, sheen_tint = none, flatness = none;
-    int clearcoat = none, clearcoat_gloss = none;
+};
+
+/// Burley's principled BSDF.
+struct PrincipledBsdf : BurleyBsdf {
+    int metallic = none, clearcoat = none, clearcoat_gloss = none;
     double eta = 1.5; ///< interior over exterior
 };
 
 /// Burley's thin principled BSDF.
-struct PrincipledThinBsdf {
-    int base_color = none, roughness = none, anisotropic = none, spec_trans = none, eta = none;
-    int spec_tint = none, sheen = none, sheen_tint = none, flatness = none;
+struct PrincipledThinBsdf : BurleyBsdf {
+    int eta = none;
     int diff_trans = none; ///< 0 to 2
 };
 

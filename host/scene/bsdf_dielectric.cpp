@@ -32,10 +32,7 @@ IndicesOfRefraction read_iors(Properties &properties, IndicesOfRefraction ior) {
 
 void SceneReader::read_model(Properties &properties, DielectricBsdf &bsdf) {
     bsdf.ior = read_iors(properties);
-    bsdf.specular_reflectance =
-        read_colour(properties, "specular_reflectance", SpectrumUse::reflectance);
-    bsdf.specular_transmittance =
-        read_colour(properties, "specular_transmittance", SpectrumUse::reflectance);
+    read_tints(properties, bsdf);
 }
 
 } // namespace clrender::mitsuba

@@ -18,22 +18,23 @@ int SceneReader::read_share(Properties &properties, const std::string &name, dou
     return index;
 }
 
-int SceneReader::read_transmission(Properties &properties) {
-    const int index = read_share(properties, "spec_trans", 0);
-    const Texture &texture = scene_.textures.at(static_cast<std::size_t>(index));
-    return texture.kind == TextureKind::constant && texture.value.x == 0 ? none : index;
-}
-
-void SceneReader::read_model(Properties &properties, PrincipledBsdf &bsdf) {
+void SceneReader::read_model(Properties &properties, BurleyBsdf &bsdf) {
     bsdf.base_color = read_colour(properties, "base_color", SpectrumUse::reflectance);
     bsdf.roughness = read_number(properties, "roughness", 0.5);
     bsdf.anisotropic = read_share(properties, "anisotropic", 0);
-    bsdf.metallic = read_share(properties, "metallic", 0);
-    bsdf.spec_trans = read_transmission(properties);
+    bsdf.spec_trans = read_share(properties, "spec_trans", 0);
     bsdf.spec_tint = read_share(properties, "spec_tint", 0);
     bsdf.sheen = read_number(properties, "sheen", 0);
     bsdf.sheen_tint = read_share(properties, "sheen_tint", 0);
     bsdf.flatness = read_share(properties, "flatness", 0);
+}
+
+void SceneReader::read_model(Properties &properties, PrincipledBsdf &bsdf) {
+    read_model(properties, static_cast<BurleyBsdf &>(bsdf));
+    const Texture &passing = scene_.textures.at(static_cast<std::size_t>(bsdf.spec_trans));
+    if (passing.kind == TextureKind::constant && passing.value.x == 0)
+        bsdf.spec_trans = none;
+    bsdf.metallic = read_share(properties, "metallic", 0);
     bsdf.clearcoat = read_share(properties, "clearcoat", 0);
     bsdf.clearcoat_gloss = read_share(properties, "clearcoat_gloss", 0);
     // How often lobes are sampled changes the noise alone.

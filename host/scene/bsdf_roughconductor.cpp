@@ -2,12 +2,14 @@
 
 namespace clrender::mitsuba {
 
+MicrofacetKind read_distribution(Properties &properties) {
+    properties.ignore({"sample_visible"});
+    return static_cast<MicrofacetKind>(properties.choice("distribution", 0, {"beckmann", "ggx"}));
+}
+
 MicrofacetModel SceneReader::read_microfacets(Properties &properties) {
     MicrofacetModel model;
-    model.kind =
-        static_cast<MicrofacetKind>(properties.choice("distribution", 0, {"beckmann", "ggx"}));
-    // Another way of sampling: the picture is the same but for its noise.
-    properties.ignore({"sample_visible"});
+    model.kind = read_distribution(properties);
     if (!properties.has("alpha_u") && !properties.has("alpha_v")) {
         model.alpha_u = model.alpha_v = read_number(properties, "alpha", 0.1);
         return model;

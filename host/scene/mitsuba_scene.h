@@ -66,11 +66,18 @@ private:
     /// The BSDF that a normal or bump map nests; it may not turn normals itself.
     int read_turned(Properties &properties);
     MicrofacetModel read_microfacets(Properties &properties);
+    /// What dielectrics of all kinds multiply reflected and transmitted light with.
+    template <typename Dielectric> void read_tints(Properties &properties, Dielectric &bsdf) {
+        bsdf.specular_reflectance =
+            read_colour(properties, "specular_reflectance", SpectrumUse::reflectance);
+        bsdf.specular_transmittance =
+            read_colour(properties, "specular_transmittance", SpectrumUse::reflectance);
+    }
+    /// What both principled BSDFs have.
+    void read_model(Properties &properties, BurleyBsdf &bsdf);
     /// The texture of the numbers `name`, which are held to `most`.
     int read_share(Properties &properties, const std::string &name, double fallback,
                    double most = 1);
-    /// A principled BSDF's spec_trans; none where it is 0 all over.
-    int read_transmission(Properties &properties);
 
     // mitsuba_shapes.cpp
     void read_shape(int object);
@@ -108,6 +115,8 @@ std::optional<ComplexIor> read_metal(Properties &properties);
 /// int_ior and ext_ior, numbers or names of media; those of `ior` where they are not stated.
 IndicesOfRefraction read_iors(Properties &properties, IndicesOfRefraction ior = {});
 PerturbedNormals read_perturbed_normals(Properties &properties);
+/// The distribution of microfacets; how it is sampled changes the noise alone.
+MicrofacetKind read_distribution(Properties &properties);
 
 /// One of the reconstruction filters.
 ReconstructionFilter read_filter(const Document &document, int object);
