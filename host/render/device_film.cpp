@@ -1,6 +1,7 @@
 #include "device_film.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace clrender {
 
@@ -27,9 +28,15 @@ DeviceFilm::DeviceFilm(const cl::Context &context, const cl::CommandQueue &queue
         control_ =
             cl::Buffer(context, CL_MEM_READ_WRITE, std::max(control_bytes_, sizeof(ControlPixel)));
     });
+    begin(bands.front());
+    unused_ = true;
 }
 
 void DeviceFilm::begin(const Band &band) {
+    if (std::exchange(unused_, false)) {
+        kept_end_row_ = band.end_row;
+        return;
+    }
     const std::size_t row = tiles_.row_bytes();
     // A band has more rows of its own than it shares with the next one, so the rows that are moved
     // do not overlap their new place.

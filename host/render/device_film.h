@@ -19,7 +19,8 @@ struct FilmWindow {
 
 class DeviceFilm {
 public:
-    /// Room for each of `bands`, one at a time, and for the control tiles of all. Throws
+    /// Room for each of `bands`, one at a time, and for the control tiles of all. The first band is
+    /// made room for at once, since what takes time is the first touch of the memory. Throws
     /// DeviceError.
     DeviceFilm(const cl::Context &context, const cl::CommandQueue &queue, const PictureTiles &tiles,
                const std::vector<Band> &bands, const ControlLayout &control);
@@ -55,6 +56,7 @@ private:
     cl::Buffer film_, counters_, control_;
     Band band_;
     std::size_t kept_end_row_ = 0; ///< end of the rows in the buffer whose sums go on
+    bool unused_ = false;          ///< the first band has room and zeros already
 };
 
 } // namespace clrender
