@@ -137,8 +137,9 @@ typedef struct {
     clr_real area;   /* of a planar or a triangle */
     clr_real radius; /* of a sphere */
     clr_word shape;  /* of a sphere */
+    clr_word pad[3];
 } Light;
-CLR_STATIC_WORDS(Light, 13);
+CLR_STATIC_WORDS(Light, 16);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
@@ -166,10 +167,9 @@ typedef struct {
     clr_real e1[3];
     clr_real pad0;
     clr_real e2[3];
-    clr_real pad1;
     clr_real normals[3][3];
     clr_real uvs[3][2];
-    clr_real pad2;
+    clr_real pad1[2];
 } LightTriangle;
 CLR_STATIC_WORDS(LightTriangle, 28);
 
