@@ -2,6 +2,7 @@
 
 #include "../input_file.h"
 #include "../log.h"
+#include "dialect.h"
 #include "mitsuba_parameters.h"
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
@@ -47,7 +48,8 @@ public:
 
 private:
     struct Place {
-        const XmlFile &xml;
+        XmlFile &xml;
+        const Dialect &dialect;
         int file;   ///< index into Document::files
         int parent; ///< index into Document::objects, or none at the root
     };
@@ -77,24 +79,6 @@ private:
     std::uintmax_t bytes_ = 0;
 };
 
-void check_version(pugi::xml_node root, const XmlFile &xml) {
-    const SourceLocation where = xml.where(root);
-    const pugi::xml_attribute attribute = root.attribute("version");
-    if (!attribute)
-        throw InputError(where, "<" + std::string(root.name()) +
-                                    "> has no version, expected version=\"3.0.0\"");
-    const std::string version = attribute.value();
-    const std::string major = version.substr(0, version.find('.'));
-    if (version.find_first_not_of("0123456789.") != std::string::npos || major.empty())
-        throw InputError(where, "version is " + in_quotes(version) + ", expected \"3.0.0\"");
-    if (major == "0" || major == "1")
-        throw InputError(where, "version " + in_quotes(version) +
-                                    " is older than Mitsuba 2, where names were changed (toWorld "
-                                    "to to_world, for one), expected \"3.0.0\" and today's names");
-    if (major != "2" && major != "3")
-        throw InputError(where, "version is " + in_quotes(version) + ", expected \"3.0.0\"");
-}
-
 void DocumentReader::check_include(const std::string &path, const SourceLocation &referrer) const {
     if (contains(open_files_, path))
         throw InputError(referrer, "the file includes itself by way of " + quoted_path(path) +
@@ -114,7 +98,7 @@ void DocumentReader::read_file(const std::string &path, const SourceLocation &re
     if (parent != none)
         check_include(canonical, referrer);
 
-    const XmlFile xml(path, referrer);
+    XmlFile xml(path, referrer);
     bytes_ += xml.size();
     if (bytes_ > max_xml_bytes)
         throw InputError(referrer, "the included files are too large, expected at most 256 MiB "
@@ -129,18 +113,18 @@ void DocumentReader::read_file(const std::string &path, const SourceLocation &re
     document_.files.push_back(std::move(file));
     open_files_.push_back(canonical);
 
-    const Place place{xml, static_cast<int>(document_.files.size()) - 1, parent};
     pugi::xml_node root = xml.root();
     parameters_.substitute(root, xml);
     const std::string tag = root.name();
     if (parent == none && tag != "scene")
         throw InputError(xml.where(root),
                          "the root element is " + in_quotes(tag) + ", expected <scene>");
-    check_version(root, xml);
+    const Dialect dialect(xml);
+    const Place place{xml, dialect, static_cast<int>(document_.files.size()) - 1, parent};
 
     // An included <scene> adds its content, any other root is itself a child.
     if (tag == "scene") {
-        check_attributes(root, xml, {"version"}, {"id", "name", "type"});
+        check_attributes(root, xml, {}, {"version", "id", "name", "type"});
         Place inside = place;
         if (parent == none) {
             document_.objects.push_back({tag, tag, "", place.file, xml.where(root).line, {}, {}});
@@ -174,6 +158,7 @@ void DocumentReader::read_element(pugi::xml_node node, const Place &place) {
                                                        {"path", &DocumentReader::read_path}};
 
     parameters_.substitute(node, place.xml);
+    place.dialect.upgrade(node, place.xml);
     const std::string tag = node.name();
     const bool is_spectrum_object = tag == "spectrum" && node.attribute("type");
     if (contains(object_tags, tag) || is_spectrum_object) {
@@ -215,7 +200,7 @@ int DocumentReader::read_object(pugi::xml_node node, const Place &place) {
                                     ", expected another one");
     document_.objects.push_back(
         {node.name(), node.attribute("type").value(), id, place.file, where.line, {}, {}});
-    read_children(node, {place.xml, place.file, index});
+    read_children(node, {place.xml, place.dialect, place.file, index});
     return index;
 }
 

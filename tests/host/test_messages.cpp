@@ -97,15 +97,13 @@ TEST_CASE("a scene without light is told once", "[messages]") {
 
 TEST_CASE("the older name of an option is treated like the newer one", "[messages]") {
     for (const std::string &name :
-         {std::string("sample_border"), std::string("high_quality_edges")}) {
-        const auto film = [&](const char *value) {
-            return "<sensor type='perspective'><film type='hdrfilm'><boolean name='" + name +
-                   "' value='" + value + "'/></film></sensor>";
-        };
-        CHECK(has(error_of_text(film("true")),
-                  "\"" + name + "\" is not supported, expected \"false\""));
-        CHECK(error_of_text(film("false")).empty());
-    }
+         {std::string("sample_border"), std::string("high_quality_edges")})
+        for (const bool value : {true, false}) {
+            const Scene scene = test::load_text(
+                "<sensor type='perspective'><film type='hdrfilm'><boolean name='" + name +
+                "' value='" + (value ? "true" : "false") + "'/></film></sensor>");
+            CHECK(scene.film.sample_border == value);
+        }
 }
 
 TEST_CASE("all faults of a scene can be asked for", "[messages]") {
@@ -137,15 +135,4 @@ TEST_CASE("all faults of a scene can be asked for", "[messages]") {
         CHECK(count(all, part) == 1);
     }
     CHECK(count(all, "\n") == 7);
-}
-
-TEST_CASE("a version before 2 is told for what it is", "[messages]") {
-    const test::ScratchFolder folder;
-    for (const char *version : {"0.6.0", "1.0.0"}) {
-        const std::string path =
-            folder.file("s.xml", std::string("<scene version=\"") + version + "\"/>");
-        const std::string error = test::error_of([&] { test::load(path); });
-        CHECK(has(error, std::string("version \"") + version + "\" is older than Mitsuba 2"));
-        CHECK_FALSE(has(error, "0.6,"));
-    }
 }
