@@ -3,6 +3,9 @@
 #include "../log.h"
 #include "mitsuba_text.h"
 
+#include <charconv>
+#include <optional>
+
 namespace clrender::mitsuba {
 
 namespace {
@@ -13,6 +16,14 @@ constexpr auto before_2 = Versions::before_2;
 
 constexpr const char *bilinear_said =
     "the texture is filtered bilinearly: filters of a wider footprint are not supported";
+/// The number that a text is, if it is one.
+std::optional<double> number_of(std::string_view text) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc{} && end == text.data() + text.size() ? std::optional(number)
+                                                                    : std::nullopt;
+}
+
 constexpr const char *eight_bits_said =
     "the film is read as \"hdrfilm\": the picture is rendered linear, and stored as --output says";
 constexpr const char *tone_said =
@@ -71,22 +82,24 @@ const ValueRule value_rules[] = {
 const DroppedRule dropped_rules[] = {
     {before_2, "texture", "bitmap ldrtexture exrtexture", "cache", any, ""},
     {before_2, "texture", "bitmap ldrtexture exrtexture", "max_anisotropy", any, ""},
-    {before_2, "texture", "bitmap ldrtexture exrtexture", "gamma", "-1 -1.0 0 0.0 2.2",
+    {before_2, "texture", "bitmap ldrtexture exrtexture", "gamma", "-1 0 2.2",
      "texels are linear or sRGB, as \"raw\" says"},
+    {before_2, "bsdf", "conductor roughconductor roughmetal", "ext_eta", "1 1.000277 air vacuum",
+     "the indices of metals are relative to vacuum"},
     {before_2, "emitter", "envmap", "cache", any, ""},
-    {before_2, "emitter", "envmap", "gamma", "-1 -1.0 0 0.0 1 1.0 2.2",
+    {before_2, "emitter", "envmap", "gamma", "-1 0 1 2.2",
      "the map's pixels are taken as its format has them"},
     {all, "film", "ldrfilm pngfilm mfilm", "file_format", any, ""},
     {all, "film", "ldrfilm pngfilm mfilm", "component_format", any, ""},
     {all, "film", "ldrfilm pngfilm mfilm", "tonemap_method", "gamma", tone_said},
-    {all, "film", "ldrfilm pngfilm mfilm", "gamma", "-1 -1.0 0 0.0 2.2", tone_said},
-    {all, "film", "ldrfilm pngfilm mfilm", "exposure", "0 0.0", tone_said},
+    {all, "film", "ldrfilm pngfilm mfilm", "gamma", "-1 0 2.2", tone_said},
+    {all, "film", "ldrfilm pngfilm mfilm", "exposure", "0", tone_said},
     {all, "film", "ldrfilm pngfilm mfilm", "key", any, ""},
     {all, "film", "ldrfilm pngfilm mfilm", "burn", any, ""},
     {all, "film", "mfilm", "digits", any, ""},
     {all, "film", "mfilm", "variable", any, ""},
     {before_2, "film", "hdrfilm exrfilm tiledhdrfilm", "channel_names", any, ""},
-    {before_2, "shape", "obj ply serialized", "max_smooth_angle", "0 0.0 180",
+    {before_2, "shape", "obj ply serialized", "max_smooth_angle", "0 180",
      "the mesh has the normals of its file"},
     {before_2, "shape", "obj", "collapse", any, ""},
     {before_2, "shape", "obj", "load_materials", "false",
@@ -101,8 +114,9 @@ const DroppedRule dropped_rules[] = {
 bool is_listed(std::string_view list, std::string_view word) {
     if (list == any)
         return true;
+    const auto number = number_of(word);
     for (const std::string_view entry : split_list(list))
-        if (entry == word)
+        if (entry == word || (number && number_of(entry) == number))
             return true;
     return false;
 }
@@ -156,8 +170,7 @@ void upgrade_wrap_modes(pugi::xml_node object) {
 /// A `gamma` of 1 tells that the texels are linear.
 void upgrade_gamma(pugi::xml_node texture, XmlFile &file) {
     const pugi::xml_node gamma = property_of(texture, "gamma");
-    const std::string_view value = gamma.attribute("value").value();
-    if (value != "1" && value != "1.0")
+    if (!is_listed("1", gamma.attribute("value").value()))
         return;
     add_value(texture, "boolean", "raw", "true", gamma, file);
     texture.remove_child(gamma);

@@ -12,7 +12,8 @@ namespace clrender::mitsuba {
 
 enum class Versions { all, before_2 };
 
-/// Whether `word` is one of the words of `list`, which are separated by blanks; "*" has all.
+/// Whether `word` is one of the words or numbers of `list`, which are separated by blanks; "*" has
+/// all.
 bool is_listed(std::string_view list, std::string_view word);
 
 /// <camera> is <sensor> today.

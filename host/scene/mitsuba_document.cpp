@@ -34,8 +34,10 @@ bool contains(const std::vector<std::string> &list, const std::string &item) {
 /// Walks the XML in document order and fills a Document.
 class DocumentReader {
 public:
-    explicit DocumentReader(const std::map<std::string, std::string> &defines)
-        : parameters_(defines) {}
+    DocumentReader(const std::map<std::string, std::string> &defines, bool all_faults)
+        : parameters_(defines) {
+        document_.all_faults = all_faults;
+    }
 
     Document read(const std::string &path) {
         read_file(path, {}, none, "");
@@ -58,6 +60,7 @@ private:
                    const std::string &name);
     void check_include(const std::string &path, const SourceLocation &referrer) const;
     void read_children(pugi::xml_node node, const Place &place);
+    void attempt_element(pugi::xml_node node, const Place &place);
     void read_element(pugi::xml_node node, const Place &place);
     int read_object(pugi::xml_node node, const Place &place);
     void read_value(pugi::xml_node node, const Place &place);
@@ -143,9 +146,22 @@ void DocumentReader::read_file(const std::string &path, const SourceLocation &re
 void DocumentReader::read_children(pugi::xml_node node, const Place &place) {
     for (const pugi::xml_node child : node.children()) {
         if (child.type() == pugi::node_element)
-            read_element(child, place);
+            attempt_element(child, place);
         else if (child.type() == pugi::node_pcdata)
             log::warn(place.xml.where(child), "text " + in_quotes(child.value()) + " is ignored");
+    }
+}
+
+/// Reads an element; where all faults are asked for, notes what is wrong with it.
+void DocumentReader::attempt_element(pugi::xml_node node, const Place &place) {
+    const std::size_t open_files = open_files_.size();
+    try {
+        read_element(node, place);
+    } catch (const InputError &error) {
+        if (!document_.all_faults)
+            throw;
+        document_.faults.emplace_back(error.what());
+        open_files_.resize(open_files);
     }
 }
 
@@ -374,18 +390,29 @@ void DocumentReader::resolve_references() {
     for (const auto &[id, unused] : ids_)
         if (known.size() < 1000)
             known.push_back(id);
-    for (Object &parent : document_.objects)
-        for (Child &child : parent.children) {
-            if (child.object != none)
-                continue;
-            const auto target = ids_.find(child.ref_id);
-            if (target == ids_.end())
-                throw InputError(document_.where(parent, child.line),
-                                 "<ref> to the unknown id " + in_quotes(child.ref_id) + ", " +
-                                     (known.empty() ? "but no object of the scene has an id"
-                                                    : expected_one_of(child.ref_id, known)));
+    const auto resolve = [&](const Object &parent, Child &child) {
+        if (child.object != none)
+            return true;
+        const auto target = ids_.find(child.ref_id);
+        if (target != ids_.end()) {
             child.object = target->second;
+            return true;
         }
+        const InputError error(document_.where(parent, child.line),
+                               "<ref> to the unknown id " + in_quotes(child.ref_id) + ", " +
+                                   (known.empty() ? "but no object of the scene has an id"
+                                                  : expected_one_of(child.ref_id, known)));
+        if (!document_.all_faults)
+            throw error;
+        document_.faults.emplace_back(error.what());
+        return false;
+    };
+    for (Object &parent : document_.objects) {
+        auto &children = parent.children;
+        children.erase(std::remove_if(children.begin(), children.end(),
+                                      [&](Child &child) { return !resolve(parent, child); }),
+                       children.end());
+    }
 }
 
 } // namespace
@@ -397,8 +424,9 @@ std::string type_name(const PropertyValue &value) {
     return names.at(value.index());
 }
 
-Document read_document(const std::string &path, const std::map<std::string, std::string> &defines) {
-    return DocumentReader(defines).read(path);
+Document read_document(const std::string &path, const std::map<std::string, std::string> &defines,
+                       bool all_faults) {
+    return DocumentReader(defines, all_faults).read(path);
 }
 
 std::string find_file(const SourceFile &file, const std::string &name,
