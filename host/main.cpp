@@ -140,7 +140,7 @@ int render_command(const cli::Options &options) {
     Profile profile;
     const auto start = profile.origin;
     activity = "reading " + options.scene;
-    Scene scene = load_scene(options.scene, {options.defines, options.check});
+    Scene scene = load_scene(options.scene, {options.defines, options.sensor, options.check});
     apply_options(options, scene);
     check_outputs(options, scene);
     cli::RunTimes times;
@@ -197,7 +197,7 @@ int test_command(const cli::Options &options) {
     cli::catch_interrupts();
     Profile profile;
     activity = "reading " + options.scene;
-    Scene scene = load_scene(options.scene, {options.defines});
+    Scene scene = load_scene(options.scene, {options.defines, options.sensor});
     apply_options(options, scene);
     scene.sample_count = options.spp.value_or(cli::default_test_samples);
     check_outputs(options, scene);

@@ -124,6 +124,15 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
         case CLR_LIGHT_POINT:
             config.HAS_POINT_LIGHTS = 1;
             break;
+        case CLR_LIGHT_SPOT:
+            config.HAS_SPOT_LIGHTS = 1;
+            break;
+        case CLR_LIGHT_PROJECTOR:
+            config.HAS_PROJECTORS = 1;
+            break;
+        case CLR_LIGHT_DIRECTIONAL:
+            config.HAS_DIRECTIONAL_LIGHTS = 1;
+            break;
         case CLR_LIGHT_SPHERE:
             config.HAS_SPHERE_LIGHTS = 1;
             break;

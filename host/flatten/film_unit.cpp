@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -43,12 +44,22 @@ double largest(const Texture &texture) {
 
 /// The largest radiance that an emitter gives a surface or the camera.
 double largest_radiance(const Scene &scene, const Emitter &emitter, double unit) {
+    const double texture =
+        emitter.radiance == none
+            ? 1
+            : largest(scene.textures[static_cast<std::size_t>(emitter.radiance)]);
+    const double of_place = unit * unit / (near_point * near_point);
     switch (emitter.kind) {
     case EmitterKind::point:
-        return largest(emitter.intensity) * unit * unit / (near_point * near_point);
+    case EmitterKind::spot:
+        return largest(emitter.intensity) * texture * of_place;
+    case EmitterKind::projector:
+        return std::numbers::pi * emitter.scale * texture * of_place;
+    case EmitterKind::directional:
+        return largest(emitter.intensity);
     case EmitterKind::area:
     case EmitterKind::constant:
-        return largest(scene.textures[static_cast<std::size_t>(emitter.radiance)]);
+        return texture;
     case EmitterKind::envmap:
         return largest(*emitter.bitmap) * std::abs(emitter.scale);
     }

@@ -31,7 +31,7 @@ FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
     flatten_materials(work);
     // Textured lights need surface coordinates too, which the shapes have to know.
     for (const Emitter &emitter : scene.emitters)
-        if (emitter.kind == EmitterKind::area) {
+        if (emitter.radiance != none && emitter.kind != EmitterKind::constant) {
             clr_real ignored[3];
             flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
         }

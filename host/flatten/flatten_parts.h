@@ -76,6 +76,9 @@ Strategy strategy_of(const Flattening &work);
 /// Camera, film and the bounds of the bounce loop.
 void flatten_camera(Flattening &work);
 
+/// Half the extent of the image plane at distance 1, along x and y; `aspect` is width over height.
+glm::dvec2 image_plane_half_size(double fov, FovAxis axis, double aspect);
+
 /// The film's unit of colour (FrameData::film_exponent): the power of two above the largest
 /// radiance that a light of the scene gives, so that a film that is brighter by a power of two has
 /// the same bits. One of depths is a distance that scenes seldom reach.

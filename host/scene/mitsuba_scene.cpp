@@ -4,6 +4,7 @@
 #include "mitsuba_text.h"
 
 #include <algorithm>
+#include <fmt/core.h>
 #include <sstream>
 #include <tbb/parallel_for.h>
 
@@ -98,20 +99,31 @@ void SceneReader::read_files() {
     });
 }
 
-void SceneReader::read_view(Properties &root) {
+void SceneReader::read_chosen_sensor(Properties &root) {
     const auto sensors = root.children("sensor");
-    const bool is_read = attempt([&] {
-        if (sensors.empty())
-            place_default_sensor();
-        else
-            read_sensor(sensors[0]->object);
-    });
-    if (!is_read && !sensors.empty())
-        check_children(sensors[0]->object);
-    if (sensors.size() > 1)
+    const std::size_t count = std::max(sensors.size(), std::size_t(1));
+    const auto chosen = static_cast<std::size_t>(chosen_sensor_.value_or(0));
+    if (chosen >= count)
+        throw InputError(root.where(),
+                         fmt::format("the scene has {}, expected --sensor from 0 to {}",
+                                     count == 1 ? "one sensor" : fmt::format("{} sensors", count),
+                                     count - 1));
+    if (count > 1 && !chosen_sensor_)
         log::warn(document_.where(root.object(), sensors[1]->line),
-                  "the scene has " + std::to_string(sensors.size()) +
-                      " sensors: only the first one is used");
+                  fmt::format("the scene has {} sensors: only the first one is used (--sensor 0 to "
+                              "{} chooses)",
+                              count, count - 1));
+    if (sensors.empty()) {
+        place_default_sensor();
+        return;
+    }
+    const bool is_read = attempt([&] { read_sensor(sensors[chosen]->object); });
+    if (!is_read)
+        check_children(sensors[chosen]->object);
+}
+
+void SceneReader::read_view(Properties &root) {
+    attempt([&] { read_chosen_sensor(root); });
 
     const auto integrators = root.children("integrator");
     attempt([&] {

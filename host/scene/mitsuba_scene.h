@@ -23,9 +23,10 @@ namespace clrender::mitsuba {
 class SceneReader {
 public:
     /// Where the document asks for all faults, what is wrong with one object does not keep the
-    /// others from being read.
-    explicit SceneReader(const Document &document)
-        : document_(document), all_faults_(document.all_faults), faults_(document.faults) {}
+    /// others from being read. `sensor`: the one to look through, counted from 0; else the first.
+    explicit SceneReader(const Document &document, std::optional<int> sensor = {})
+        : document_(document), all_faults_(document.all_faults), chosen_sensor_(sensor),
+          faults_(document.faults) {}
 
     /// Throws InputError, with a line for each fault if all are asked for.
     Scene read();
@@ -38,6 +39,7 @@ private:
     void read_scene_emitters(Properties &root);
     void read_files();
     void read_view(Properties &root);
+    void read_chosen_sensor(Properties &root);
     void check_unused_bsdfs(Properties &root);
     void place_default_sensor();
     void warn_of_missing(Properties &root) const;
@@ -94,6 +96,10 @@ private:
     int read_area_emitter(int object, int shape);
     void read_point(Properties &properties, Emitter &emitter);
     void read_envmap(Properties &properties, Emitter &emitter);
+    // emitter_<kind>.cpp
+    void read_spot(Properties &properties, Emitter &emitter);
+    void read_directional(Properties &properties, Emitter &emitter);
+    void read_projector(Properties &properties, Emitter &emitter);
 
     // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
     void read_sensor(int object);
@@ -105,6 +111,7 @@ private:
 
     const Document &document_;
     bool all_faults_;
+    std::optional<int> chosen_sensor_;
     std::vector<std::string> faults_; ///< lines, each once
     Scene scene_;
     bool load_images_ = true;  ///< off while objects that no shape uses are checked
@@ -123,6 +130,13 @@ IndicesOfRefraction read_iors(Properties &properties, IndicesOfRefraction ior = 
 PerturbedNormals read_perturbed_normals(Properties &properties);
 /// The distribution of microfacets; how it is sampled changes the noise alone.
 MicrofacetKind read_distribution(Properties &properties);
+
+struct FieldOfView {
+    double degrees;
+    FovAxis axis;
+};
+/// `fov` and `fov_axis`, or `focal_length`, of cameras and projectors.
+FieldOfView read_field_of_view(Properties &properties);
 
 /// One of the reconstruction filters.
 ReconstructionFilter read_filter(const Document &document, int object);

@@ -67,25 +67,37 @@ struct Shape {
     SourceLocation where;
 };
 
-enum class EmitterKind { point, area, constant, envmap };
+enum class FovAxis { x, y, diagonal, smaller, larger };
 
+enum class EmitterKind { point, area, constant, envmap, spot, directional, projector };
+
+/// Spots and projectors shine along +z of their own space. A spot's texture covers the square
+/// around its cone, u along +x and v along +y; a projector's picture lies as a camera's does, +y up
+/// and +x to the left, its first row on top.
 struct Emitter {
     EmitterKind kind = EmitterKind::area;
-    int radiance = none;      ///< area, constant: texture index (constant: a constant one)
-    Rgb intensity{0.0};       ///< point: W/sr
-    glm::dvec3 position{0.0}; ///< point
-    int shape = none;         ///< area
+    /// Texture index. area; constant: a constant one; spot: what its light is multiplied with, or
+    /// none; projector: a pi-th of the irradiance at distance 1, before `scale`.
+    int radiance = none;
+    Rgb intensity{0.0};        ///< point, spot: W/sr; directional: W/m^2
+    glm::dvec3 position{0.0};  ///< point
+    glm::dvec3 direction{0.0}; ///< directional: where its light goes, unit length
+    double cutoff_angle = 20;  ///< spot: degrees from the axis, from where on it is dark
+    double beam_width = 15;    ///< spot: degrees up to which it is brightest, at most cutoff_angle
+    double fov = 52.2;         ///< projector: degrees along fov_axis
+    FovAxis fov_axis = FovAxis::x;       ///< projector
+    int shape = none;                    ///< area
     std::shared_ptr<const Image> bitmap; ///< envmap: latitude-longitude, at least 2 x 3 pixels
     bool raw = false;                    ///< envmap: u8 data are linear
-    double scale = 1;                    ///< envmap
-    glm::dmat4 to_world{1.0};            ///< envmap
+    double scale = 1;                    ///< envmap, projector
+    glm::dmat4 to_world{1.0};            ///< envmap, spot, projector
     SourceLocation where;
 };
 
-enum class SensorKind { perspective, thinlens };
-enum class FovAxis { x, y, diagonal, smaller, larger };
+enum class SensorKind { perspective, thinlens, orthographic };
 
-/// The camera looks along +z of its own space, +y up and +x to the left of the picture.
+/// The camera looks along +z of its own space, +y up and +x to the left of the picture. Rays of an
+/// orthographic one begin on z = 0, where the picture is two units wide.
 struct Sensor {
     SensorKind kind = SensorKind::perspective;
     glm::dmat4 to_world{1.0};

@@ -122,11 +122,16 @@ CLR_STATIC_WORDS(ShapeFrame, 9);
 #define CLR_LIGHT_SPHERE 1u
 #define CLR_LIGHT_PLANAR 2u
 #define CLR_LIGHT_TRIANGLE 3u
+#define CLR_LIGHT_SPOT 4u
+#define CLR_LIGHT_PROJECTOR 5u
+#define CLR_LIGHT_DIRECTIONAL 6u
 
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
-   light triangles; bit k of `trail` is the child taken at level k of the light tree. `position` is
-   that of a point, the centre of a sphere, or the middle of the only light. Point: radiance holds
-   the intensity, times the square of the unit of length. */
+   light triangles or of the light beams; bit k of `trail` is the child taken at level k of the
+   light tree. `position` is that of a point, spot or projector, the centre of a sphere, the middle
+   of the only light, or of a directional one the unit vector towards it. Point and spot: radiance
+   holds the intensity, times the square of the unit of length; projector: pi times the irradiance
+   at distance 1, or pi where a texture tells it, times the same; directional: the irradiance. */
 typedef struct {
     clr_real position[3];
     clr_word kind;
@@ -173,11 +178,31 @@ typedef struct {
 } LightTriangle;
 CLR_STATIC_WORDS(LightTriangle, 28);
 
+/* What a spot or a projector lights. For a vector w from it to a point, z = axis . w is the depth,
+   and its texture is looked up at (u, v) = (1/2 + to_u . w / z, 1/2 + to_v . w / z). A spot is dark
+   from the angle `cutoff` (turns) on and grows by `ramp` a turn inwards, up to its full intensity;
+   `reach` is what takes (to_u . w, to_v . w) to the units of z. A projector's light goes through
+   the unit square, and falls with z^2 times front . w / |w|. */
+typedef struct {
+    clr_real to_u[3];
+    clr_real cutoff;
+    clr_real to_v[3];
+    clr_real ramp;
+    clr_real axis[3];
+    clr_real reach;
+    clr_real front[3];
+    clr_real pad;
+} LightBeam;
+CLR_STATIC_WORDS(LightBeam, 16);
+
 /* A node of the light tree: bounds of both children. Of each: the sphere around its lights and
    their summed intensity (the largest radiant intensity in any direction, luminance); the index of
    the child's node, or CLR_LIGHT_LEAF plus the light's; and the cone that holds the normals of its
-   lights, by its axis and the cosine and sine of its half angle. */
+   lights, by its axis and the cosine and sine of its half angle. The fourth number of the axis is 0
+   where no light leaves the cone, else 1. CLR_LIGHT_DISTANT is added to the index of children that
+   are infinitely far away: their points are directions, their intensity is irradiance. */
 #define CLR_LIGHT_LEAF 0x80000000u
+#define CLR_LIGHT_DISTANT 0x40000000u
 #define CLR_LIGHT_TREE_LEVELS 32
 typedef struct {
     clr_real center[3];
