@@ -4,6 +4,7 @@
 #include "scene.h"
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace clrender {
 struct MeshReadOptions {
     bool face_normals = false;    ///< drop vertex normals: flat shading
     bool flip_tex_coords = false; ///< v -> 1 - v (the readers' callers know Mitsuba's defaults)
+    /// Names of attributes to read; if there are none, the mesh does not list what it has.
+    std::set<std::string> attributes{};
 };
 
 /// One group of an OBJ file: its triangles and the MTL material they name ("" if none).

@@ -64,6 +64,7 @@ void SceneReader::read_shape(int object) {
             read_mesh_file(properties, shape);
     }
     read_surface(properties, shape);
+    read_attributes_of(object, shape);
     properties.finish();
     scene_.shapes.push_back(std::move(shape));
 }

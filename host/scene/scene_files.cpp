@@ -115,9 +115,11 @@ std::shared_ptr<const Mesh> SceneFiles::mesh(MeshFormat format, const std::strin
         meshes_[{normal(path), format, options.face_normals, options.flip_tex_coords}];
     if (!known) {
         const auto mesh = std::make_shared<Mesh>();
-        reads_.add([mesh, format, path, options, where] {
-            *mesh = format == MeshFormat::obj ? read_obj_mesh(path, options, where)
-                                              : read_ply_mesh(path, options, where);
+        reads_.add([this, mesh, format, path, options, where] {
+            MeshReadOptions all = options;
+            all.attributes = attributes_;
+            *mesh = format == MeshFormat::obj ? read_obj_mesh(path, all, where)
+                                              : read_ply_mesh(path, all, where);
         });
         known = mesh;
     }
