@@ -290,7 +290,7 @@ Mesh read_obj_mesh(const std::string &path, const MeshReadOptions &options,
 }
 
 ObjFile read_obj_file(const std::string &path) {
-    ObjBuilder builder(path, {}, {false, true, {vertex_colors}});
+    ObjBuilder builder(path, {}, {.flip_tex_coords = true, .attributes = {vertex_colors}});
     builder.read();
     complete_normals(builder.mesh);
 

@@ -15,7 +15,7 @@
 
 namespace clrender {
 
-enum class MeshFormat { obj, ply };
+enum class MeshFormat { obj, ply, serialized };
 
 struct ImageUse {
     bool raw = false;         ///< 16-bit values are linear, else they are decoded from sRGB
@@ -50,7 +50,8 @@ private:
     std::set<std::string> attributes_;
     std::vector<std::function<void()>> checks_;
     std::map<std::tuple<std::string, bool, bool, bool>, std::shared_ptr<const Image>> images_;
-    std::map<std::tuple<std::string, MeshFormat, bool, bool>, std::shared_ptr<const Mesh>> meshes_;
+    std::map<std::tuple<std::string, MeshFormat, bool, bool, int>, std::shared_ptr<const Mesh>>
+        meshes_;
 };
 
 } // namespace clrender
