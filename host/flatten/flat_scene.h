@@ -71,6 +71,8 @@ struct FlatScene {
     }
     /// Whether some material's shading frame follows dp/du.
     [[nodiscard]] bool has_tangents() const;
+    /// Whether surfaces need coordinates: attributes of meshes do not.
+    [[nodiscard]] bool needs_uvs() const;
     /// The lane-wise sphere that is the only light, or none.
     [[nodiscard]] int sole_light_sphere() const;
     [[nodiscard]] std::size_t bytes() const;

@@ -5,6 +5,7 @@
 #include "scene/shape_bounds.h"
 
 #include <map>
+#include <string>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -18,11 +19,12 @@ struct Flattening {
     const Scene &scene;
     const SamplingOptions &options;
     FlatScene flat{};
-    std::vector<Box> boxes{};                 ///< by Scene::shapes, in world coordinates
-    std::map<int, uint> texture_index{};      ///< by Scene::textures
-    std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
-    std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
-    std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none
+    std::vector<Box> boxes{};                      ///< by Scene::shapes, in world coordinates
+    std::map<int, uint> texture_index{};           ///< by Scene::textures
+    std::map<std::string, uint> attribute_index{}; ///< by name, of those that shapes show
+    std::map<int, uint> sides_of_bsdf{};           ///< by Scene::bsdfs, as ShapeInfo::materials
+    std::map<int, uint> primitive_of_shape{};      ///< by Scene::shapes, spheres and planars
+    std::vector<int> lane_wise_shapes{}; ///< Scene::shapes by lane-wise primitive, or none
     std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
     bool spheres_in_bvh = false;    ///< there are too many to test them one by one
@@ -33,9 +35,7 @@ struct Flattening {
         return is_forced(options.forced_features, name);
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
-    [[nodiscard]] bool needs_uvs() const {
-        return !flat.textures.empty() || flat.has_tangents() || wants("HAS_UVS");
-    }
+    [[nodiscard]] bool needs_uvs() const { return flat.needs_uvs() || wants("HAS_UVS"); }
 };
 
 /// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
@@ -43,6 +43,9 @@ struct Flattening {
 /// camera, nor do they move for something that is far away or huge.
 /// `boxes` are those of the scene's shapes.
 Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes);
+
+/// Fills attribute_index.
+void number_attributes(Flattening &work);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
 void flatten_materials(Flattening &work);

@@ -52,6 +52,10 @@ private:
     int read_checkerboard(Properties &properties, SpectrumUse use);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     int read_raw_constant(Properties &properties, SpectrumUse use);
+    // mitsuba_attributes.cpp
+    int read_mesh_attribute(Properties &properties);
+    /// Notes the attributes that a shape's textures show, to be checked when its mesh is read.
+    void read_attributes_of(int object, Shape &shape);
     /// The colour or texture `name` of an object, or none.
     int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
     /// The texture of the numbers `name`.

@@ -17,7 +17,7 @@
 
 namespace clrender {
 
-enum class TextureKind { constant, bitmap, checkerboard };
+enum class TextureKind { constant, bitmap, checkerboard, attribute };
 enum class TextureFilter { bilinear, nearest };
 enum class TextureWrap { repeat, mirror, clamp };
 
@@ -34,8 +34,22 @@ struct Texture {
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard
+    std::string attribute;        ///< attribute: its name, as MeshAttribute has it
+    double scale = 1;             ///< attribute
     glm::dmat3 to_uv{1.0};
 };
+
+/// What a mesh holds for textures: a colour or a number by vertex, which is interpolated, or by
+/// triangle.
+struct MeshAttribute {
+    std::string name;          ///< begins with "vertex_" or "face_"
+    std::size_t channels = 3;  ///< 1 or 3
+    double whole = 0;          ///< of integers the largest that their type holds, else 0
+    std::vector<float> values; ///< `channels` a vertex or triangle; empty: nothing asks for it
+};
+
+/// Whether an attribute of that name is one of faces.
+bool is_face_attribute(const std::string &name);
 
 /// An indexed triangle mesh in its own object space, before Shape::to_world.
 struct Mesh {
@@ -43,6 +57,7 @@ struct Mesh {
     std::vector<glm::vec3> normals; ///< per vertex, unit length, or empty: flat
     std::vector<glm::vec2> uvs;     ///< per vertex, or empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<MeshAttribute> attributes;
     bool has_computed_normals = false; ///< the file states none: they are smooth_normals()
 };
 
@@ -63,6 +78,7 @@ struct Shape {
     bool flip_normals = false;
     int bsdf = none;    ///< index; the readers give a default diffuse .5 BSDF to shapes without one
     int emitter = none; ///< index of an area emitter
+    std::vector<int> attribute_textures; ///< those of kind `attribute` that it shows
     std::string id;
     SourceLocation where;
 };
