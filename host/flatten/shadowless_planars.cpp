@@ -76,6 +76,7 @@ ShadowlessPlanars::ShadowlessPlanars(const Scene &scene, double touching)
                     [](const Emitter &emitter) { return emitter.kind == EmitterKind::envmap; });
     if (has_map_)
         return; // nobody asks for the boxes
+    instance_boxes_ = instance_boxes(scene);
     for (const Shape &shape : scene.shapes) {
         if (shape.kind != ShapeKind::mesh || boxes_.count(shape.mesh.get()) != 0)
             continue;
@@ -122,6 +123,13 @@ bool ShadowlessPlanars::is_outer(const Shape &planar) const {
             add_mesh(shape, sides);
             break;
         }
+        if (sides.both())
+            return false;
+    }
+    for (const Box &box : instance_boxes_) {
+        if (!box.empty())
+            for (const glm::dvec3 &corner : box.corners())
+                sides.add(corner);
         if (sides.both())
             return false;
     }

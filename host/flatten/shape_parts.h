@@ -20,6 +20,8 @@ ShapeTest test_of(const Shape &shape, const Flattening &work);
 void flatten_planars(Flattening &work);
 /// What becomes triangles.
 void flatten_meshes(Flattening &work);
+/// The triangles of a mesh or a rectangle, in the coordinates of `placement`.
+void append_triangles(const Shape &shape, const Placement &placement, Flattening &work);
 
 /// The shape's entry among the shape infos, with the frame that spheres need for their (u, v).
 uint append_shape(const Shape &shape, Flattening &work);

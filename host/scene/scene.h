@@ -67,6 +67,19 @@ struct Shape {
     SourceLocation where;
 };
 
+/// Shapes that are shown by instances alone, as often as there are: rectangles and meshes, placed
+/// in the group's own coordinates. None emits.
+struct ShapeGroup {
+    std::vector<Shape> shapes;
+};
+
+/// A group in a place of the scene. Normals go through the inverse transpose of `to_world`, also if
+/// it mirrors, after all that the group's shapes do to them.
+struct ShapeInstance {
+    int group = none; ///< index
+    glm::dmat4x3 to_world{1.0};
+};
+
 enum class EmitterKind { point, area, constant, envmap };
 
 struct Emitter {
@@ -137,6 +150,8 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<Bsdf> bsdfs;
     std::vector<Shape> shapes;
+    std::vector<ShapeGroup> groups;
+    std::vector<ShapeInstance> instances;
     std::vector<Emitter> emitters;
     Sensor sensor;
     FilmSettings film;
