@@ -29,6 +29,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_DISKS, 1),
         CLR_SETTING(HAS_TRIANGLES, 1),
         CLR_SETTING(HAS_BVH_SPHERES, 1),
+        CLR_SETTING(HAS_INSTANCES, 1),
         CLR_SETTING(HAS_VERTEX_NORMALS, 1),
         CLR_SETTING(HAS_UVS, 1),
 #define CLR_BSDF(KIND, kind, width, lobes, meaning) CLR_SETTING(HAS_##KIND, 1),
@@ -73,6 +74,7 @@ const std::multimap<std::string, std::string> &dependents() {
     static const std::multimap<std::string, std::string> table = {
         {"HAS_UVS", "HAS_TANGENTS"},
         {"HAS_TRIANGLES", "HAS_ATTRIBUTES"},
+        {"HAS_TRIANGLES", "HAS_INSTANCES"},
         {"HAS_TANGENTS", "HAS_BUMPMAP"},
         {"HAS_TANGENTS", "HAS_NORMALMAP"},
         {"HAS_GGX", "HAS_ROUGHCONDUCTOR"},

@@ -33,7 +33,8 @@ FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
     work.flat.facts.strategy = strategy_of(work);
     for (const Shape &shape : scene.shapes)
         work.boxes.push_back(shape_box(shape));
-    work.flat.placement = choose_placement(scene, work.boxes);
+    work.instance_boxes = instance_boxes(scene);
+    work.flat.placement = choose_placement(scene, work.boxes, work.instance_boxes);
     number_attributes(work);
     flatten_materials(work);
     // Textured lights need surface coordinates too, which the shapes have to know.

@@ -1,6 +1,7 @@
 #include "shape_parts.h"
 #include "triangle_split.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace clrender::inline CLR_PRECISION {
@@ -92,13 +93,13 @@ void append_vertex_data(const Shape &shape, const Mesh &mesh, const std::vector<
 }
 
 /// Appends a mesh's triangles to the corners, its vertex data and shape numbers to the flat scene.
-void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flattening &work) {
+void append_mesh(const Shape &shape, const Mesh &mesh, const Placement &placement,
+                 VertexData wanted, Flattening &work) {
     FlatScene &flat = work.flat;
     PlacedMesh placed;
     placed.shape = append_shape(shape, work);
     const auto exact = [&](std::uint32_t vertex) {
-        return flat.placement.exact(
-            glm::dvec3(shape.to_world * glm::dvec4(mesh.positions[vertex], 1)));
+        return placement.exact(glm::dvec3(shape.to_world * glm::dvec4(mesh.positions[vertex], 1)));
     };
     std::vector<Vec3> positions(mesh.positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
@@ -135,28 +136,35 @@ void append_mesh(const Shape &shape, const Mesh &mesh, VertexData wanted, Flatte
 
 } // namespace
 
+void append_triangles(const Shape &shape, const Placement &placement, Flattening &work) {
+    const VertexData wanted{work.vertex_normals, work.needs_uvs(), !work.attribute_index.empty()};
+    const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
+    if (shape.mesh)
+        append_mesh(shape, *shape.mesh, placement, wanted, work);
+    else
+        append_mesh(shape, rectangle_mesh(mirrored), placement, wanted, work);
+}
+
 void flatten_meshes(Flattening &work) {
     FlatScene &flat = work.flat;
-    VertexData wanted;
-    wanted.uvs = work.needs_uvs();
-    wanted.attributes = !work.attribute_index.empty();
-    wanted.normals = work.wants("HAS_VERTEX_NORMALS");
-    for (const Shape &shape : work.scene.shapes)
-        wanted.normals |= shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
+    const auto has_normals = [](const Shape &shape) {
+        return shape.kind == ShapeKind::mesh && !shape.mesh->normals.empty();
+    };
+    const auto any_has_normals = [&](const std::vector<Shape> &shapes) {
+        return std::any_of(shapes.begin(), shapes.end(), has_normals);
+    };
+    work.vertex_normals =
+        work.wants("HAS_VERTEX_NORMALS") || any_has_normals(work.scene.shapes) ||
+        std::any_of(work.scene.groups.begin(), work.scene.groups.end(),
+                    [&](const ShapeGroup &group) { return any_has_normals(group.shapes); });
     for (std::size_t i = 0; i < work.scene.shapes.size(); ++i) {
         const Shape &shape = work.scene.shapes[i];
-        const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
         TriangleRange &range = work.triangles_of_shape[static_cast<int>(i)];
         range.first = flat.corners.size();
-        if (test_of(shape, work) == ShapeTest::triangles) {
-            if (shape.mesh)
-                append_mesh(shape, *shape.mesh, wanted, work);
-            else
-                append_mesh(shape, rectangle_mesh(mirrored), wanted, work);
-        }
+        if (test_of(shape, work) == ShapeTest::triangles)
+            append_triangles(shape, flat.placement, work);
         range.count = flat.corners.size() - range.first;
     }
-    flat.triangle_count = flat.corners.size();
 }
 
 } // namespace clrender::inline CLR_PRECISION

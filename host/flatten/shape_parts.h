@@ -24,6 +24,8 @@ ShapeTest test_of(const Shape &shape, const Flattening &work);
 void flatten_planars(Flattening &work);
 /// What becomes triangles.
 void flatten_meshes(Flattening &work);
+/// The triangles of a mesh or a rectangle, in the coordinates of `placement`.
+void append_triangles(const Shape &shape, const Placement &placement, Flattening &work);
 
 /// A vertex that splitting a mesh's triangle adds, behind the mesh's own.
 struct AddedVertex {

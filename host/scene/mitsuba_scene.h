@@ -95,6 +95,11 @@ private:
     void read_mesh_file(Properties &properties, Shape &shape);
     void read_surface(Properties &properties, Shape &shape);
 
+    // mitsuba_instances.cpp
+    int read_group(int object);
+    void read_instance(int object);
+    void finish_groups();
+
     // mitsuba_emitters.cpp
     void read_emitter(int object);
     int read_area_emitter(int object, int shape);
@@ -125,6 +130,15 @@ private:
     std::set<int> open_bsdfs_, area_emitters_;
     SceneFiles files_;
     std::vector<std::size_t> shapes_from_files_; ///< places in Scene::shapes
+
+    /// A group whose files may be still to read.
+    struct ReadGroup {
+        ShapeGroup shapes;
+        std::vector<bool> from_files; ///< by `shapes`: a mesh file has it
+        std::vector<Shape> copied;    ///< each instance adds one to the scene
+    };
+    std::vector<ReadGroup> read_groups_; ///< as Scene::groups
+    std::map<int, int> groups_;          ///< by object
 };
 
 /// The metal that a conductor names; it then states neither eta nor k.
@@ -148,7 +162,10 @@ ReconstructionFilter read_filter(const Document &document, int object);
 /// Gives a shape from a mesh file the normals that Mitsuba gives it after `to_world`.
 void follow_transform(Shape &shape);
 
-/// The world-space box around all shapes; false if there are none.
-bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest);
+/// True if a transformation turns, mirrors and scales alone, as far as float32 exporters manage.
+bool is_similarity(const glm::dmat3 &m);
+
+/// The world-space box around all shapes and instances; false if there are none.
+bool bounds_of(const Scene &scene, glm::dvec3 &lowest, glm::dvec3 &highest);
 
 } // namespace clrender::mitsuba

@@ -1,10 +1,12 @@
-/// Shapes: sphere, rectangle, disk, cube, obj, ply, serialized.
+/// Shapes: sphere, rectangle, disk, cube, obj, ply, serialized; groups and instances lead to
+/// mitsuba_instances.cpp.
 
 #include "cube_mesh.h"
 #include "mesh_normals.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
+#include "shape_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +17,16 @@ namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> shape_types{"sphere", "rectangle", "disk",      "cube",
-                                           "obj",    "ply",       "serialized"};
+const std::vector<std::string> shape_types{"sphere", "rectangle",  "disk",       "cube",    "obj",
+                                           "ply",    "serialized", "shapegroup", "instance"};
 
-/// True if the columns have the same length and are at right angles, as far as float32 exporters
-/// manage.
+void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
+    lowest = glm::min(lowest, point);
+    highest = glm::max(highest, point);
+}
+
+} // namespace
+
 bool is_similarity(const glm::dmat3 &m) {
     constexpr double tolerance = 1e-4;
     const double size = glm::length(m[0]);
@@ -32,18 +39,19 @@ bool is_similarity(const glm::dmat3 &m) {
     return true;
 }
 
-void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
-    lowest = glm::min(lowest, point);
-    highest = glm::max(highest, point);
-}
-
-} // namespace
-
 void SceneReader::read_shape(int object) {
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
     if (std::find(shape_types.begin(), shape_types.end(), type) == shape_types.end())
         fail_unsupported(document_, properties.object(), shape_types);
+    if (type == "shapegroup") {
+        read_group(object);
+        return;
+    }
+    if (type == "instance") {
+        read_instance(object);
+        return;
+    }
 
     Shape shape;
     shape.id = properties.object().id;
@@ -139,10 +147,10 @@ void follow_transform(Shape &shape) {
     shape.mesh = std::move(placed);
 }
 
-bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest) {
+bool bounds_of(const Scene &scene, glm::dvec3 &lowest, glm::dvec3 &highest) {
     lowest = glm::dvec3(std::numeric_limits<double>::infinity());
     highest = -lowest;
-    for (const Shape &shape : shapes) {
+    for (const Shape &shape : scene.shapes) {
         const glm::dmat4 &m = shape.to_world;
         if (shape.kind == ShapeKind::mesh) {
             for (const glm::dvec3 &position : shape.mesh->positions)
@@ -161,6 +169,10 @@ bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 
         }
         extend(lowest, highest, glm::dvec3(m[3]) - half);
         extend(lowest, highest, glm::dvec3(m[3]) + half);
+    }
+    for (const Box &box : instance_boxes(scene)) {
+        extend(lowest, highest, box.low);
+        extend(lowest, highest, box.high);
     }
     return lowest.x <= highest.x;
 }

@@ -84,6 +84,18 @@ struct Shape {
 };
 
 enum class FovAxis { x, y, diagonal, smaller, larger };
+/// Shapes that are shown by instances alone, as often as there are: rectangles and meshes, placed
+/// in the group's own coordinates. None emits.
+struct ShapeGroup {
+    std::vector<Shape> shapes;
+};
+
+/// A group in a place of the scene. Normals go through the inverse transpose of `to_world`, also if
+/// it mirrors, after all that the group's shapes do to them.
+struct ShapeInstance {
+    int group = none; ///< index
+    glm::dmat4x3 to_world{1.0};
+};
 
 enum class EmitterKind { point, area, constant, envmap, spot, directional, projector };
 
@@ -142,7 +154,7 @@ enum class PixelFormat { luminance, luminance_alpha, rgb, rgba, xyz, xyza };
 struct FilmSettings {
     int width = 768, height = 576;
     int crop_x = 0, crop_y = 0, crop_width = 0,
-        crop_height = 0; ///< resolved: never 0 after reading
+        crop_height = 0;        ///< resolved: never 0 after reading
     bool sample_border = false; ///< samples lie outside of the crop window as well, as far as the
                                 ///< filter reaches
     ReconstructionFilter filter;
@@ -167,6 +179,8 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<Bsdf> bsdfs;
     std::vector<Shape> shapes;
+    std::vector<ShapeGroup> groups;
+    std::vector<ShapeInstance> instances;
     std::vector<Emitter> emitters;
     Sensor sensor;
     FilmSettings film;
