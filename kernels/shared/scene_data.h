@@ -91,9 +91,10 @@ enum {
 #define CLR_BSDF_TANGENTS 0x400u      /* the frame has to follow dp/du */
 #define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
 #define CLR_BSDF_SHADOWS_NORMALS 0x1000u
-#define CLR_BSDF_TRANSMITS 0x8000u /* a lobe that is no delta lies behind the surface */
-#define CLR_BSDF_NONLINEAR 0x4000u /* plastic whose hue changes with each reflection inside */
-#define CLR_BSDF_MIRRORED 0x2000u  /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_TRANSMITS 0x8000u     /* a lobe that is no delta lies behind the surface */
+#define CLR_BSDF_NONLINEAR 0x4000u     /* plastic whose hue changes with each reflection inside */
+#define CLR_BSDF_MIRRORED 0x2000u      /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_LETS_THROUGH 0x10000u /* a map of what lets light through */
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
