@@ -114,7 +114,7 @@ enum class PixelFormat { luminance, luminance_alpha, rgb, rgba, xyz, xyza };
 struct FilmSettings {
     int width = 768, height = 576;
     int crop_x = 0, crop_y = 0, crop_width = 0,
-        crop_height = 0; ///< resolved: never 0 after reading
+        crop_height = 0;        ///< resolved: never 0 after reading
     bool sample_border = false; ///< samples lie outside of the crop window as well, as far as the
                                 ///< filter reaches
     ReconstructionFilter filter;
@@ -130,8 +130,8 @@ struct Integrator {
     int rr_depth = 5;   ///< path: roulette from this depth on
     bool hide_emitters = false;
     bool skips_passages = false; ///< path: what lets light pass straight is no edge
-    int emitter_samples = 1; ///< direct
-    int bsdf_samples = 1;    ///< direct
+    int emitter_samples = 1;     ///< direct
+    int bsdf_samples = 1;        ///< direct
     SourceLocation where;
 };
 
