@@ -140,7 +140,7 @@ int render_command(const cli::Options &options) {
     Profile profile;
     const auto start = profile.origin;
     activity = "reading " + options.scene;
-    Scene scene = load_scene(options.scene, {options.defines, options.check});
+    Scene scene = load_scene(options.scene, {options.defines, options.sensor, options.check});
     apply_options(options, scene);
     check_outputs(options, scene);
     cli::RunTimes times;
@@ -153,10 +153,12 @@ int render_command(const cli::Options &options) {
     if (options.check) {
         if (!options.stats.empty() || options.profile)
             log::warn("--check renders nothing: --stats and --profile are left out");
+        const std::string instances =
+            scene.instances.empty() ? "" : fmt::format("{} instances, ", scene.instances.size());
         const std::string what =
-            fmt::format("{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples", options.scene,
-                        scene.shapes.size(), scene.emitters.size(), scene.film.crop_width,
-                        scene.film.crop_height, scene.sample_count);
+            fmt::format("{}: fine: {} shapes, {}{} emitters, {}x{} pixels, {} samples",
+                        options.scene, scene.shapes.size(), instances, scene.emitters.size(),
+                        scene.film.crop_width, scene.film.crop_height, scene.sample_count);
         const MemoryNeed need = memory_needed(std::move(scene), how);
         log::info(fmt::format("{}, {:.2f} MiB on the device, {:.0f} MiB in all", what,
                               static_cast<double>(need.device) / (1 << 20),
@@ -197,7 +199,7 @@ int test_command(const cli::Options &options) {
     cli::catch_interrupts();
     Profile profile;
     activity = "reading " + options.scene;
-    Scene scene = load_scene(options.scene, {options.defines});
+    Scene scene = load_scene(options.scene, {options.defines, options.sensor});
     apply_options(options, scene);
     scene.sample_count = options.spp.value_or(cli::default_test_samples);
     check_outputs(options, scene);

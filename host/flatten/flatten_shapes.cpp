@@ -1,11 +1,9 @@
-#include "log.h"
 #include "scene/shape_bounds.h"
 #include "shape_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fmt/core.h>
 #include <limits>
 
 namespace clrender::inline CLR_PRECISION {
@@ -31,10 +29,16 @@ bool is_opaque(const Scene &scene, const Shape &shape) {
     if (lets_light_through(scene, shape.bsdf) ||
         (shape.emitter != none && scene.integrator.hide_emitters))
         return false;
-    const double distance =
-        glm::length(glm::dvec3(shape.to_world[3]) - glm::dvec3(scene.sensor.to_world[3]));
+    const Sensor &sensor = scene.sensor;
+    const glm::dvec3 way = glm::dvec3(shape.to_world[3]) - glm::dvec3(sensor.to_world[3]);
+    double distance = glm::length(way);
+    if (sensor.kind == SensorKind::orthographic) { // that from the film's plane
+        const glm::dvec3 normal =
+            glm::cross(glm::dvec3(sensor.to_world[0]), glm::dvec3(sensor.to_world[1]));
+        distance = std::abs(glm::dot(way, glm::normalize(normal)));
+    }
     constexpr double margin = 1.0001;
-    return distance > sphere_radius(shape) * margin + scene.sensor.aperture_radius;
+    return distance > sphere_radius(shape) * margin + sensor.aperture_radius;
 }
 
 /// Spheres from this radius on, in the renderer's units, are as large as the scene.
@@ -194,25 +198,12 @@ void flatten_shapes(Flattening &work) {
     flatten_lane_wise_spheres(work);
     flatten_planars(work);
     flatten_meshes(work);
+    flatten_instances(work);
     flat.frame.prim_bvh_sphere =
         static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
     flatten_bvh_spheres(work);
 
     make_records(work);
-}
-
-void build_hierarchy(FlatScene &flat) {
-    Bvh bvh = build_bvh(flat.corners, flat.bvh_spheres);
-    // An empty list in place of an empty vector would keep the memory.
-    flat.corners = std::vector<TriangleCorners>();
-    flat.bvh_spheres = std::vector<BvhSphere>();
-    flat.nodes = std::move(bvh.nodes);
-    flat.triangle_blocks = std::move(bvh.triangle_blocks);
-    flat.sphere_blocks = std::move(bvh.sphere_blocks);
-    flat.frame.triangle_blocks = static_cast<uint>(flat.triangle_blocks.size());
-    flat.frame.sphere_blocks = static_cast<uint>(flat.sphere_blocks.size());
-    if (bvh.degenerate > 0)
-        log::warn(fmt::format("{} triangles or spheres without area are left out", bvh.degenerate));
 }
 
 } // namespace clrender::inline CLR_PRECISION

@@ -4,6 +4,7 @@
 #include "mitsuba_text.h"
 
 #include <algorithm>
+#include <fmt/core.h>
 #include <sstream>
 #include <tbb/parallel_for.h>
 
@@ -67,7 +68,7 @@ void SceneReader::check_children(int object) {
 }
 
 void SceneReader::warn_of_missing(Properties &root) const {
-    if (scene_.shapes.empty())
+    if (scene_.shapes.empty() && scene_.instances.empty())
         log::warn(root.where(), "the scene has no shapes");
     if (scene_.emitters.empty() && scene_.integrator.kind != IntegratorKind::depth)
         log::warn(root.where(), "the scene has no light: the picture will be black");
@@ -96,22 +97,34 @@ void SceneReader::read_files() {
     tbb::parallel_for(std::size_t(0), shapes_from_files_.size(), [&](std::size_t i) {
         follow_transform(scene_.shapes[shapes_from_files_[i]]);
     });
+    finish_groups();
+}
+
+void SceneReader::read_chosen_sensor(Properties &root) {
+    const auto sensors = root.children("sensor");
+    const std::size_t count = std::max(sensors.size(), std::size_t(1));
+    const auto chosen = static_cast<std::size_t>(chosen_sensor_.value_or(0));
+    if (chosen >= count)
+        throw InputError(root.where(),
+                         fmt::format("the scene has {}, expected --sensor from 0 to {}",
+                                     count == 1 ? "one sensor" : fmt::format("{} sensors", count),
+                                     count - 1));
+    if (count > 1 && !chosen_sensor_)
+        log::warn(document_.where(root.object(), sensors[1]->line),
+                  fmt::format("the scene has {} sensors: only the first one is used (--sensor 0 to "
+                              "{} chooses)",
+                              count, count - 1));
+    if (sensors.empty()) {
+        place_default_sensor();
+        return;
+    }
+    const bool is_read = attempt([&] { read_sensor(sensors[chosen]->object); });
+    if (!is_read)
+        check_children(sensors[chosen]->object);
 }
 
 void SceneReader::read_view(Properties &root) {
-    const auto sensors = root.children("sensor");
-    const bool is_read = attempt([&] {
-        if (sensors.empty())
-            place_default_sensor();
-        else
-            read_sensor(sensors[0]->object);
-    });
-    if (!is_read && !sensors.empty())
-        check_children(sensors[0]->object);
-    if (sensors.size() > 1)
-        log::warn(document_.where(root.object(), sensors[1]->line),
-                  "the scene has " + std::to_string(sensors.size()) +
-                      " sensors: only the first one is used");
+    attempt([&] { read_chosen_sensor(root); });
 
     const auto integrators = root.children("integrator");
     attempt([&] {

@@ -23,9 +23,10 @@ namespace clrender::mitsuba {
 class SceneReader {
 public:
     /// Where the document asks for all faults, what is wrong with one object does not keep the
-    /// others from being read.
-    explicit SceneReader(const Document &document)
-        : document_(document), all_faults_(document.all_faults), faults_(document.faults) {}
+    /// others from being read. `sensor`: the one to look through, counted from 0; else the first.
+    explicit SceneReader(const Document &document, std::optional<int> sensor = {})
+        : document_(document), all_faults_(document.all_faults), chosen_sensor_(sensor),
+          faults_(document.faults) {}
 
     /// Throws InputError, with a line for each fault if all are asked for.
     Scene read();
@@ -38,6 +39,7 @@ private:
     void read_scene_emitters(Properties &root);
     void read_files();
     void read_view(Properties &root);
+    void read_chosen_sensor(Properties &root);
     void check_unused_bsdfs(Properties &root);
     void place_default_sensor();
     void warn_of_missing(Properties &root) const;
@@ -50,6 +52,10 @@ private:
     int read_checkerboard(Properties &properties, SpectrumUse use);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     int read_raw_constant(Properties &properties, SpectrumUse use);
+    // mitsuba_attributes.cpp
+    int read_mesh_attribute(Properties &properties);
+    /// Notes the attributes that a shape's textures show, to be checked when its mesh is read.
+    void read_attributes_of(int object, Shape &shape);
     /// The colour or texture `name` of an object, or none.
     int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
     /// The texture of the numbers `name`.
@@ -89,11 +95,20 @@ private:
     void read_mesh_file(Properties &properties, Shape &shape);
     void read_surface(Properties &properties, Shape &shape);
 
+    // mitsuba_instances.cpp
+    int read_group(int object);
+    void read_instance(int object);
+    void finish_groups();
+
     // mitsuba_emitters.cpp
     void read_emitter(int object);
     int read_area_emitter(int object, int shape);
     void read_point(Properties &properties, Emitter &emitter);
     void read_envmap(Properties &properties, Emitter &emitter);
+    // emitter_<kind>.cpp
+    void read_spot(Properties &properties, Emitter &emitter);
+    void read_directional(Properties &properties, Emitter &emitter);
+    void read_projector(Properties &properties, Emitter &emitter);
 
     // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
     void read_sensor(int object);
@@ -105,6 +120,7 @@ private:
 
     const Document &document_;
     bool all_faults_;
+    std::optional<int> chosen_sensor_;
     std::vector<std::string> faults_; ///< lines, each once
     Scene scene_;
     bool load_images_ = true;  ///< off while objects that no shape uses are checked
@@ -114,6 +130,15 @@ private:
     std::set<int> open_bsdfs_, area_emitters_;
     SceneFiles files_;
     std::vector<std::size_t> shapes_from_files_; ///< places in Scene::shapes
+
+    /// A group whose files may be still to read.
+    struct ReadGroup {
+        ShapeGroup shapes;
+        std::vector<bool> from_files; ///< by `shapes`: a mesh file has it
+        std::vector<Shape> copied;    ///< each instance adds one to the scene
+    };
+    std::vector<ReadGroup> read_groups_; ///< as Scene::groups
+    std::map<int, int> groups_;          ///< by object
 };
 
 /// The metal that a conductor names; it then states neither eta nor k.
@@ -124,13 +149,23 @@ PerturbedNormals read_perturbed_normals(Properties &properties);
 /// The distribution of microfacets; how it is sampled changes the noise alone.
 MicrofacetKind read_distribution(Properties &properties);
 
+struct FieldOfView {
+    double degrees;
+    FovAxis axis;
+};
+/// `fov` and `fov_axis`, or `focal_length`, of cameras and projectors.
+FieldOfView read_field_of_view(Properties &properties);
+
 /// One of the reconstruction filters.
 ReconstructionFilter read_filter(const Document &document, int object);
 
 /// Gives a shape from a mesh file the normals that Mitsuba gives it after `to_world`.
 void follow_transform(Shape &shape);
 
-/// The world-space box around all shapes; false if there are none.
-bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest);
+/// True if a transformation turns, mirrors and scales alone, as far as float32 exporters manage.
+bool is_similarity(const glm::dmat3 &m);
+
+/// The world-space box around all shapes and instances; false if there are none.
+bool bounds_of(const Scene &scene, glm::dvec3 &lowest, glm::dvec3 &highest);
 
 } // namespace clrender::mitsuba

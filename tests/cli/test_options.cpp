@@ -163,6 +163,8 @@ TEST_CASE("Values at the edge of what is allowed") {
     CHECK(accept({"x.xml", "--max-depth", "0"}).max_depth == 0);
     CHECK(accept({"x.xml", "--rr-depth", "1"}).rr_depth == 1);
     CHECK(accept({"x.xml", "--seed", "0"}).seed == 0U);
+    CHECK(accept({"x.xml", "--sensor", "2"}).sensor == 2);
+    CHECK_FALSE(accept({"x.xml"}).sensor.has_value());
 }
 
 TEST_CASE("A mistake ends with exit code 2") {
@@ -193,6 +195,7 @@ TEST_CASE("A mistake ends with exit code 2") {
         {"x.xml", "--max-depth", "-2"},
         {"x.xml", "--rr-depth", "0"},
         {"x.xml", "--seed", "-1"},
+        {"x.xml", "--sensor", "-1"},
         {"x.xml", "--seed", "4294967296"},
         {"x.xml", "--lanes", "2"},
         {"x.xml", "--lanes", "wide"},

@@ -143,7 +143,7 @@ TEST_CASE("all faults of a scene can be asked for", "[messages]") {
 <shape type="disk"><ref id="shared"/></shape>
 <shape type="ply"><string name="filename" value="bad.ply"/></shape>
 <shape type="obj"><string name="filename" value="bad.obj"/></shape>
-<emitter type="spot"/>
+<emitter type="collimated"/>
 <sensor type="perspective"><float name="fov" value="200"/></sensor>
 <integrator type="stokes"/>
 </scene>
