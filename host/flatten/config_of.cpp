@@ -159,13 +159,17 @@ void set_integrator(const FlatScene &flat, const SamplingOptions &sampling, Kern
     config.STRATEGY = static_cast<int>(flat.facts.strategy);
     config.SAMPLER = sampling.independent_sampler ? CLR_SAMPLER_INDEPENDENT : CLR_SAMPLER_SOBOL;
     config.HIDE_EMITTERS = flat.facts.hides_emitters ? 1 : 0;
-    config.HAS_ROULETTE = !flat.facts.shows_depth && f.rr_depth < f.max_depth ? 1 : 0;
+    config.FREE_PASSAGES =
+        flat.facts.free_passages && (config.HAS_NULL != 0 || config.HAS_THINDIELECTRIC != 0) ? 1
+                                                                                             : 0;
+    config.HAS_ROULETTE =
+        !flat.facts.shows_depth && (f.rr_depth < f.max_depth || config.FREE_PASSAGES != 0) ? 1 : 0;
     // The last ray of a path would only bring what multiple importance sampling expects of it:
     // light. After some bounces all of it may as well come from light sampling, where that cannot
     // miss: of several lights it might choose one that is hidden, and seldom the one that shines.
     constexpr int long_path = 5;
     config.FINAL_BY_LIGHTS = flat.facts.strategy == Strategy::mis && f.max_depth >= long_path &&
-                                     f.max_depth < INT_MAX &&
+                                     f.max_depth < INT_MAX && config.FREE_PASSAGES == 0 &&
                                      flat.facts.environment == CLR_ENVIRONMENT_NONE &&
                                      flat.lights.size() == 1 && !has_unsampled_emitters(flat)
                                  ? 1

@@ -49,6 +49,7 @@ struct SceneFacts {
     Strategy strategy = Strategy::mis;
     bool shows_depth = false; ///< the depth integrator
     bool hides_emitters = false;
+    bool free_passages = false; ///< as FREE_PASSAGES, if there are passages
     bool has_alpha = false;
     bool has_clip = false;
     bool far_camera = false;

@@ -40,7 +40,8 @@ void flatten_integrator(Flattening &work) {
     FrameData &f = flat.frame;
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
     f.rr_depth = integrator.rr_depth;
-    if (f.max_depth > max_depth_without_roulette)
+    flat.facts.free_passages = integrator.skips_passages && integrator.max_depth >= 0;
+    if (f.max_depth > max_depth_without_roulette || flat.facts.free_passages)
         f.rr_depth = std::min(f.rr_depth, max_depth_without_roulette);
     flat.facts.hides_emitters = integrator.hide_emitters;
     flat.facts.shows_depth = integrator.kind == IntegratorKind::depth;

@@ -61,19 +61,13 @@ template <typename Items, typename Test> bool has_any(const Items &items, Test t
     return std::any_of(items.begin(), items.end(), test);
 }
 
-/// Warns of light that the scene's own integrator finds and path tracing does not, or counts
-/// otherwise.
+/// Warns of light that the scene's own integrator finds and path tracing does not.
 void warn_of_differences(const Scene &scene, const SourceLocation &where, const SameLight &other) {
     const bool has_point_like = has_any(scene.emitters, is_point_like);
     if (other.finds_caustics && has_point_like && has_any(scene.bsdfs, is_smooth))
         log::warn(where, "light of lights without extent that smooth glass or mirrors bring "
                          "(caustics) is found by this integrator, but not by path tracing");
-    if (!other.skips_passages || !has_any(scene.bsdfs, lets_pass_straight))
-        return;
-    if (scene.integrator.max_depth >= 0)
-        log::warn(where, "what lets light pass straight (null, mask, thindielectric) counts as a "
-                         "segment of \"max_depth\" in path tracing, but not in this integrator");
-    if (has_point_like)
+    if (other.skips_passages && has_point_like && has_any(scene.bsdfs, lets_pass_straight))
         log::warn(where, "lights without extent do not shine through what lets light pass "
                          "straight in path tracing, but do in this integrator");
 }
@@ -115,6 +109,7 @@ void SceneReader::read_integrator(int object) {
 void SceneReader::read_other_integrator(Properties &properties, const SameLight &other) {
     Integrator &integrator = scene_.integrator;
     integrator.max_depth = other.max_depth;
+    integrator.skips_passages = other.skips_passages;
     read_path(properties, integrator);
 
     // What else it states tells how the light is found, not how much there is.

@@ -169,8 +169,9 @@ struct Integrator {
     int max_depth = -1; ///< path: edges of the longest path; -1 = unbounded
     int rr_depth = 5;   ///< path: roulette from this depth on
     bool hide_emitters = false;
-    int emitter_samples = 1; ///< direct
-    int bsdf_samples = 1;    ///< direct
+    bool skips_passages = false; ///< path: what lets light pass straight is no edge
+    int emitter_samples = 1;     ///< direct
+    int bsdf_samples = 1;        ///< direct
     SourceLocation where;
 };
 

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -286,6 +287,52 @@ TEST_CASE("alpha is what masks stop") {
     // Four standard errors of 2^16 independent paths.
     CHECK(alpha(1) == Approx(0.25).margin(4 * std::sqrt(0.25 * 0.75) / 256));
     CHECK(alpha(2) == Approx(0.4375).margin(4 * std::sqrt(0.4375 * 0.5625) / 256));
+}
+
+// A floor under two sheets that let all light pass, under a sky of 1: two edges bring its albedo
+// where passages count for nothing (volpath), and no light where each is an edge (path).
+TEST_CASE("max_depth counts passages as the scene's integrator does") {
+    const std::string sheets = R"(<shape type="rectangle"><transform name="to_world">
+        <rotate x="1" angle="-90"/><scale value="30"/><translate y="1"/></transform>
+        <bsdf type="null"/></shape><shape type="rectangle"><transform name="to_world">
+        <rotate x="1" angle="-90"/><scale value="30"/><translate y="2"/></transform>
+        <bsdf type="null"/></shape><emitter type="constant"><rgb name="radiance" value="1"/>
+        </emitter>)";
+    const auto seen = [&](const std::string &type) {
+        std::string how = integrator(2);
+        how.replace(how.find("path"), 4, type);
+        return render_measured(scene_from_xml(how + camera_above + floor_below + sheets),
+                               {.spp = 16})
+            .mean;
+    };
+    check_constant(seen("volpath"), albedo, 1e-5);
+    const Image dark = seen("path");
+    CHECK(std::all_of(dark.f32.begin(), dark.f32.end(), [](float value) { return value == 0; }));
+}
+
+// A lamp begins where the film ends, at its left. Of the tent filter of the leftmost pixels
+// an eighth lies there, .131 with the filter's table of 31 steps; no sample of the film's own does.
+TEST_CASE("sample_border brings the light beside the film") {
+    std::string view = camera_above;
+    view.replace(view.find("<rfilter type=\"box\"/>"), 21, R"(<rfilter type="tent"/>
+        <boolean name="sample_border" value="true"/>)");
+    const double edge = 5 * std::tan(20 * pi / 180);
+    const auto picture = render_measured(
+        scene_from_xml(integrator(1) + view +
+                       fmt::format(R"(<shape type="rectangle"><transform name="to_world">
+                           <rotate x="1" angle="-90"/><scale x="5" z="20"/>
+                           <translate x="{}"/></transform><emitter type="area">
+                           <rgb name="radiance" value="1"/></emitter></shape>)",
+                                   edge + 5)),
+        {.spp = 256});
+    REQUIRE(picture.mean.width == size);
+    REQUIRE(picture.mean.height == size);
+    double left = 0;
+    double elsewhere = 0;
+    for (std::size_t i = 0; i < picture.mean.f32.size(); ++i)
+        (i % (3 * size) < 3 ? left : elsewhere) += static_cast<double>(picture.mean.f32[i]);
+    CHECK(left / (3 * size) == Approx(0.131).margin(0.01));
+    CHECK(elsewhere == 0);
 }
 
 // The light's picture fills the film, one texel a pixel; row 0 of the file is at v = 0, y = -1.
