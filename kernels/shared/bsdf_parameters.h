@@ -14,6 +14,12 @@ typedef struct {
 } BsdfParameter;
 CLR_STATIC_WORDS(BsdfParameter, 4);
 
+/* Two that follow each other, which are fetched at once. */
+typedef struct {
+    BsdfParameter first, second;
+} BsdfParameterPair;
+CLR_STATIC_WORDS(BsdfParameterPair, 8);
+
 enum {
     CLR_ROUGHCONDUCTOR_ALPHA_U,
     CLR_ROUGHCONDUCTOR_ALPHA_V,
