@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// FNV-1a, 64 bits: finds changes and damage, guards against nobody.
+/// FNV-1a, 64 bits: detects changes and damage, not forgery.
 std::uint64_t hash_of(const std::string &text) {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     for (const char c : text)

@@ -16,7 +16,7 @@ constexpr std::size_t kLarge = std::size_t(4) << 20;
 /// a rough plastic in double precision, has as many.
 constexpr std::size_t kLeast = 512;
 
-/// A processor's runtime maps the buffer where it lies; nobody has touched it yet.
+/// A processor's runtime maps the buffer where it lies; its pages are not yet mapped.
 void lay_into_large_pages(const cl::CommandQueue &queue, const cl::Buffer &buffer,
                           std::size_t bytes) {
     void *memory = queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE, 0, bytes);

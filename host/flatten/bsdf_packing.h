@@ -65,8 +65,8 @@ void pack_plastic(MaterialPacker &packer, const PlasticBsdf &bsdf, double intern
                   PackedBsdf &packed);
 /// The flags of a principled BSDF with this texture of anisotropy.
 uint burley_flags(const MaterialPacker &packer, int anisotropic);
-/// The flags that a microfacet model gives a material.
-uint flags_of(const MicrofacetModel &model);
+/// Sets the flags and the roughness of anisotropic microfacets, CLR_MICROFACETS_*.
+void pack_microfacets(MaterialPacker &packer, const MicrofacetModel &model, PackedBsdf &packed);
 /// Those that the map of a side gives it, `nested` being what the map turns.
 uint flags_of(const MaterialPacker &packer, const PerturbedNormals &normals, int nested,
               BsdfSide side);

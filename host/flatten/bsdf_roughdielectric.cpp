@@ -3,10 +3,9 @@
 namespace clrender::inline CLR_PRECISION {
 
 PackedBsdf pack_bsdf(MaterialPacker &packer, const RoughDielectricBsdf &bsdf, BsdfSide) {
-    PackedBsdf packed(CLR_BSDF_ROUGHDIELECTRIC | CLR_BSDF_TRANSMITS | flags_of(bsdf.microfacets));
+    PackedBsdf packed(CLR_BSDF_ROUGHDIELECTRIC | CLR_BSDF_TRANSMITS);
     packed.parameters.resize(CLR_ROUGHDIELECTRIC_PARAMETERS);
-    packed.parameters[CLR_ROUGHDIELECTRIC_ALPHA_U] = packer.colour(bsdf.microfacets.alpha_u);
-    packed.parameters[CLR_ROUGHDIELECTRIC_ALPHA_V] = packer.colour(bsdf.microfacets.alpha_v);
+    pack_microfacets(packer, bsdf.microfacets, packed);
     packed.parameters[CLR_ROUGHDIELECTRIC_REFLECTANCE] = packer.colour(bsdf.specular_reflectance);
     packed.parameters[CLR_ROUGHDIELECTRIC_TRANSMITTANCE] =
         packer.colour(bsdf.specular_transmittance);

@@ -14,19 +14,24 @@ typedef struct {
 } BsdfParameter;
 CLR_STATIC_WORDS(BsdfParameter, 4);
 
+/* Two that follow each other, which are fetched at once. */
+typedef struct {
+    BsdfParameter first, second;
+} BsdfParameterPair;
+CLR_STATIC_WORDS(BsdfParameterPair, 8);
+
+/* What both have first whose microfacets may be anisotropic: rough conductors and dielectrics. */
+enum { CLR_MICROFACETS_ALPHA_U, CLR_MICROFACETS_ALPHA_V, CLR_MICROFACETS_PARAMETERS };
+
 enum {
-    CLR_ROUGHCONDUCTOR_ALPHA_U,
-    CLR_ROUGHCONDUCTOR_ALPHA_V,
-    CLR_ROUGHCONDUCTOR_REFLECTANCE,
+    CLR_ROUGHCONDUCTOR_REFLECTANCE = CLR_MICROFACETS_PARAMETERS,
     CLR_ROUGHCONDUCTOR_ETA,
     CLR_ROUGHCONDUCTOR_K,
     CLR_ROUGHCONDUCTOR_PARAMETERS
 };
 
 enum {
-    CLR_ROUGHDIELECTRIC_ALPHA_U,
-    CLR_ROUGHDIELECTRIC_ALPHA_V,
-    CLR_ROUGHDIELECTRIC_REFLECTANCE,
+    CLR_ROUGHDIELECTRIC_REFLECTANCE = CLR_MICROFACETS_PARAMETERS,
     CLR_ROUGHDIELECTRIC_TRANSMITTANCE,
     CLR_ROUGHDIELECTRIC_ETA, /* interior over exterior, and its inverse */
     CLR_ROUGHDIELECTRIC_PARAMETERS
