@@ -11,7 +11,7 @@ build_packages=(
 # To run it: an OpenCL runtime for the CPU.
 run_packages=(pocl-opencl-icd)
 # To test it.
-test_packages=(catch2 clang-14 clang-format-14 clang-tidy-14 oclgrind python3)
+test_packages=(catch2 clang-14 clang-format-14 clang-tidy-14 libclang-14-dev llvm-14-dev oclgrind python3)
 # To test it on Intel's runtime, which comes from PyPI.
 intel_packages=(python3-venv)
 # To give its readers made-up input (scripts/fuzz).

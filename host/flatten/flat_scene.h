@@ -51,6 +51,7 @@ struct SceneFacts {
 /// Its arrays are those of scene_buffers.def, which says what each holds.
 struct FlatScene {
     FrameData frame{};
+    int border = 0; ///< pixels of the frame on each side that are sampled, but not in the picture
     Placement placement;
 #define CLR_BUFFER_ARRAY(type, name, meaning) std::vector<type> name;
     CLR_SCENE_BUFFERS(CLR_BUFFER_ARRAY)

@@ -19,17 +19,18 @@ void flatten_film(Flattening &work) {
     FlatScene &flat = work.flat;
     const FilmSettings &film = work.scene.film;
     FrameData &f = flat.frame;
-    f.width = static_cast<uint>(film.crop_width);
-    f.height = static_cast<uint>(film.crop_height);
-    f.crop_x = film.crop_x;
-    f.crop_y = film.crop_y;
+    flat.border = work.options.pixel_centers ? 0 : sampled_border(film);
+    f.width = static_cast<uint>(film.crop_width + 2 * flat.border);
+    f.height = static_cast<uint>(film.crop_height + 2 * flat.border);
+    f.crop_x = film.crop_x - flat.border;
+    f.crop_y = film.crop_y - flat.border;
     const PixelFormat format = film.pixel_format;
     flat.facts.has_alpha = format == PixelFormat::luminance_alpha || format == PixelFormat::rgba ||
                            format == PixelFormat::xyza;
     f.filter_radius = static_cast<clr_real>(filter_radius(film.filter));
     if (work.options.pixel_centers || film.filter.kind == FilterKind::box)
         return;
-    flat.facts.filter_border = static_cast<int>(std::ceil(filter_radius(film.filter) - 0.5));
+    flat.facts.filter_border = filter_border(film.filter);
     flat.filter = tabulate_filter(film.filter);
 }
 

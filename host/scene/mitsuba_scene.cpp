@@ -21,6 +21,7 @@ Scene SceneReader::read() {
     // Definitions that others refer to have been read with those; here they mean nothing.
     root.children("texture");
     root.children("spectrum");
+    root.children("medium"); // told of where an object has it
     for (const char *tag : {"film", "sampler"})
         for (const Child *child : root.children(tag))
             log::detail(document_.where(root.object(), child->line).str() + ": <" + tag +
@@ -32,20 +33,37 @@ Scene SceneReader::read() {
     return std::move(scene_);
 }
 
-/// Runs a step of reading; where all faults are asked for, notes what it throws.
-void SceneReader::attempt(const std::function<void()> &step) {
+/// Runs a step of reading; where all faults are asked for, notes what it throws. False if it has
+/// thrown.
+bool SceneReader::attempt(const std::function<void()> &step) {
     try {
         step();
+        return true;
     } catch (const InputError &error) {
         if (!all_faults_)
             throw;
-        open_bsdfs_.clear();
 
         // Objects that are used twice fail twice.
         std::istringstream lines(error.what());
         for (std::string line; std::getline(lines, line);)
             if (std::find(faults_.begin(), faults_.end(), line) == faults_.end())
                 faults_.push_back(line);
+        return false;
+    }
+}
+
+/// Reads what stands inside of an object that has failed, for its faults alone.
+void SceneReader::check_children(int object) {
+    for (const Child &child : document_.at(object).children) {
+        const std::string &tag = document_.at(child.object).tag;
+        if (tag == "bsdf")
+            attempt([&] { read_bsdf(child.object); });
+        else if (tag == "film")
+            attempt([&] { read_film(child.object); });
+        else if (tag == "sampler")
+            attempt([&] { read_sampler(child.object); });
+        else if (tag == "emitter" && area_emitters_.count(child.object) == 0)
+            attempt([&] { read_area_emitter(child.object, none); });
     }
 }
 
@@ -63,8 +81,8 @@ void SceneReader::warn_of_missing(Properties &root) const {
 void SceneReader::read_shapes(Properties &root) {
     std::set<int> seen; // a <ref> to a shape of the scene adds nothing
     for (const Child *child : root.children("shape"))
-        if (seen.insert(child->object).second)
-            attempt([&] { read_shape(child->object); });
+        if (seen.insert(child->object).second && !attempt([&] { read_shape(child->object); }))
+            check_children(child->object);
 }
 
 void SceneReader::read_scene_emitters(Properties &root) {
@@ -97,8 +115,8 @@ void SceneReader::read_chosen_sensor(Properties &root) {
                               count, count - 1));
     if (sensors.empty())
         place_default_sensor();
-    else
-        read_sensor(sensors[chosen]->object);
+    else if (!attempt([&] { read_sensor(sensors[chosen]->object); }))
+        check_children(sensors[chosen]->object);
 }
 
 void SceneReader::read_view(Properties &root) {
@@ -116,6 +134,7 @@ void SceneReader::read_view(Properties &root) {
 
 void SceneReader::check_unused_bsdfs(Properties &root) {
     SceneReader checker(document_);
+    checker.all_faults_ = false;
     checker.load_images_ = false;
     for (const Child *child : root.children("bsdf")) {
         if (bsdfs_.count(child->object) > 0)
@@ -124,6 +143,10 @@ void SceneReader::check_unused_bsdfs(Properties &root) {
             checker.read_bsdf(child->object);
         } catch (const UnsupportedError &error) {
             log::warn(std::string(error.what()) + " (no shape uses it)");
+            checker.open_bsdfs_.clear();
+        } catch (const InputError &) {
+            checker.open_bsdfs_.clear();
+            attempt([] { throw; });
         }
     }
 }

@@ -4,6 +4,7 @@
 #include "mitsuba_document.h"
 #include "mitsuba_properties.h"
 #include "named_media.h"
+#include "same_light.h"
 #include "scene.h"
 #include "scene_files.h"
 #include "spectrum.h"
@@ -21,17 +22,19 @@ namespace clrender::mitsuba {
 
 class SceneReader {
 public:
-    /// `all_faults`: what is wrong with one object does not keep the others from being read.
-    explicit SceneReader(const Document &document, bool all_faults = false,
-                         std::optional<int> sensor = {})
-        : document_(document), all_faults_(all_faults), chosen_sensor_(sensor) {}
+    /// Where the document asks for all faults, what is wrong with one object does not keep the
+    /// others from being read. `sensor`: which of several; unless stated the first.
+    explicit SceneReader(const Document &document, std::optional<int> sensor = {})
+        : document_(document), all_faults_(document.all_faults), chosen_sensor_(sensor),
+          faults_(document.faults) {}
 
     /// Throws InputError, with a line for each fault if all are asked for.
     Scene read();
 
 private:
     // mitsuba_scene.cpp
-    void attempt(const std::function<void()> &step);
+    bool attempt(const std::function<void()> &step);
+    void check_children(int object);
     void read_shapes(Properties &root);
     void read_scene_emitters(Properties &root);
     void read_files();
@@ -44,6 +47,7 @@ private:
     // mitsuba_textures.cpp; all return indices into Scene::textures
     int add_constant(const Rgb &value);
     int read_texture(int object, SpectrumUse use);
+    int read_new_texture(int object, SpectrumUse use);
     int read_bitmap(Properties &properties, SpectrumUse use);
     int read_checkerboard(Properties &properties, SpectrumUse use);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
@@ -102,6 +106,8 @@ private:
     void read_sampler(int object);
     void read_film(int object);
     void read_integrator(int object);
+    void read_other_integrator(Properties &properties, const SameLight &other);
+    void read_layers(Properties &properties);
 
     const Document &document_;
     bool all_faults_;

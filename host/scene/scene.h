@@ -127,6 +127,8 @@ struct FilmSettings {
     int width = 768, height = 576;
     int crop_x = 0, crop_y = 0, crop_width = 0,
         crop_height = 0; ///< resolved: never 0 after reading
+    bool sample_border = false; ///< samples lie outside of the crop window as well, as far as the
+                                ///< filter reaches
     ReconstructionFilter filter;
     PixelFormat pixel_format = PixelFormat::rgb;
     SourceLocation where;

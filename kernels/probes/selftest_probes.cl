@@ -170,8 +170,10 @@ __kernel void probe_texture(PROBE_SCENE_PARAMETERS) {
 /* in: a direction from the centre of shape 0. out: u and v there. */
 __kernel void probe_sphere_uv(PROBE_SCENE_PARAMETERS) {
     PROBE_SCENE;
+    vec3 axis[3];
+    sphere_axes(scene, int_of(0), axis);
     real u, v;
-    sphere_uv(scene, int_of(0), probe_in3(in, first, count, 3u, 0u), &u, &v);
+    sphere_uv(axis, probe_in3(in, first, count, 3u, 0u), &u, &v);
     probe_out(u, out, first, count, 2u, 0u);
     probe_out(v, out, first, count, 2u, 1u);
 }

@@ -91,9 +91,10 @@ enum {
 #define CLR_BSDF_TANGENTS 0x400u      /* the frame has to follow dp/du */
 #define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
 #define CLR_BSDF_SHADOWS_NORMALS 0x1000u
-#define CLR_BSDF_TRANSMITS 0x8000u /* a lobe that is no delta lies behind the surface */
-#define CLR_BSDF_NONLINEAR 0x4000u /* plastic whose hue changes with each reflection inside */
-#define CLR_BSDF_MIRRORED 0x2000u  /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_TRANSMITS 0x8000u     /* a lobe that is no delta lies behind the surface */
+#define CLR_BSDF_NONLINEAR 0x4000u     /* plastic whose hue changes with each reflection inside */
+#define CLR_BSDF_MIRRORED 0x2000u      /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_LETS_THROUGH 0x10000u /* a map of what lets light through */
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
@@ -141,8 +142,9 @@ typedef struct {
     clr_real area;   /* of a planar or a triangle */
     clr_real radius; /* of a sphere */
     clr_word shape;  /* of a sphere */
+    clr_word pad[3];
 } Light;
-CLR_STATIC_WORDS(Light, 13);
+CLR_STATIC_WORDS(Light, 16);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
@@ -170,10 +172,9 @@ typedef struct {
     clr_real e1[3];
     clr_real pad0;
     clr_real e2[3];
-    clr_real pad1;
     clr_real normals[3][3];
     clr_real uvs[3][2];
-    clr_real pad2;
+    clr_real pad1[2];
 } LightTriangle;
 CLR_STATIC_WORDS(LightTriangle, 28);
 
