@@ -8,4 +8,5 @@ TITLES = {
     "lights": "400 sphere lights, 50 meshes",
     "million": "A million triangles, sky and lamp",
     "spheres": "Ten thousand spheres",
+    "herd": "4,096 instances of a mesh, sky",
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the benchmark's seven scenes: Mitsuba 3 XML, binary PLY meshes, textures and a sky.
+"""Writes the benchmark's eight scenes: Mitsuba 3 XML, binary PLY meshes, textures and a sky.
 
 usage: make_scenes.py FOLDER [SCENE...]      all scenes, or those named; needs numpy
 
@@ -168,6 +168,14 @@ def write_sky(path, elevation, azimuth, diameter=3.0, height=512):
 
 # --- the scenes -------------------------------------------------
 
+def standing_creature(folder, triangles):
+    """The project's own creature, made of about so many triangles."""
+    source = folder / "creature.obj"
+    run(["ninja", "-C", BUILD, "--quiet", "clrender-make-mesh"])
+    run([BUILD / "scenes" / "generator" / "clrender-make-mesh", "creature", triangles, source])
+    return meshes.standing(meshes.read_obj(source))
+
+
 def make_room(folder):
     """The report's room: scenes/spheres.xml with its defaults, in this size. Its camera turns the
     picture left to right, which takes no time and which not every renderer can: left out."""
@@ -186,12 +194,9 @@ def make_mesh(folder):
     """A mesh of 70 thousand triangles in a diffuse box under a small lamp
     (bench/scenes/mesh_box.xml): the Stanford bunny where it is present, else the project's own
     creature."""
-    source = BUNNY
-    if not source.is_file():
-        source = folder / "creature.obj"
-        run(["ninja", "-C", BUILD, "--quiet", "clrender-make-mesh"])
-        run([BUILD / "scenes" / "generator" / "clrender-make-mesh", "creature", 70000, source])
-    meshes.write_ply(meshes.standing(meshes.read_obj(source)), folder / "mesh.ply")
+    mesh = (meshes.standing(meshes.read_obj(BUNNY)) if BUNNY.is_file()
+            else standing_creature(folder, 70000))
+    meshes.write_ply(mesh, folder / "mesh.ply")
     shutil.copy(BENCH / "scenes" / "mesh_box.xml", folder / "mesh.xml")
 
 
@@ -266,8 +271,26 @@ def make_spheres(folder):
     write_scene(folder, "spheres", (0, 2.2, 5.2), (0, 0, .9), 42, parts)
 
 
+def make_herd(folder, side=64):
+    """side^2 instances of a creature of six thousand triangles on a ground under a sky."""
+    write_sky(folder / "sky.hdr", elevation=38, azimuth=120)
+    meshes.write_ply(standing_creature(folder, 6000), folder / "herd.ply")
+    draw = random.Random(11)
+    parts = ['<emitter type="envmap"><string name="filename" value="sky.hdr"/></emitter>',
+             diffuse("ground", (.5, .45, .4)), ground(2 * side, "ground"),
+             diffuse("skin", (.62, .4, .27)),
+             f'<shape type="shapegroup" id="animal">{ply("herd.ply", "skin")}</shape>']
+    for i in range(side * side):
+        place = transform([draw.uniform(.7, 1.1)] * 3, ("y", draw.uniform(0, 360)),
+                          (1.3 * (i % side - (side - 1) / 2) + draw.uniform(-.2, .2), 0,
+                           1.3 * (i // side - (side - 1) / 2) + draw.uniform(-.2, .2)))
+        parts.append(f'<shape type="instance"><ref id="animal"/>{place}</shape>')
+    write_scene(folder, "herd", (0, side * .2, side * .75), (0, 0, side * .1), 42, parts)
+
+
 SCENES = {"room": make_room, "mesh": make_mesh, "sky": make_sky, "glass": make_glass,
-          "lights": make_lights, "million": make_million, "spheres": make_spheres}
+          "lights": make_lights, "million": make_million, "spheres": make_spheres,
+          "herd": make_herd}
 
 
 def main():

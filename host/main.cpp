@@ -153,10 +153,12 @@ int render_command(const cli::Options &options) {
     if (options.check) {
         if (!options.stats.empty() || options.profile)
             log::warn("--check renders nothing: --stats and --profile are left out");
+        const std::string instances =
+            scene.instances.empty() ? "" : fmt::format("{} instances, ", scene.instances.size());
         const std::string what =
-            fmt::format("{}: fine: {} shapes, {} emitters, {}x{} pixels, {} samples", options.scene,
-                        scene.shapes.size(), scene.emitters.size(), scene.film.crop_width,
-                        scene.film.crop_height, scene.sample_count);
+            fmt::format("{}: fine: {} shapes, {}{} emitters, {}x{} pixels, {} samples",
+                        options.scene, scene.shapes.size(), instances, scene.emitters.size(),
+                        scene.film.crop_width, scene.film.crop_height, scene.sample_count);
         const MemoryNeed need = memory_needed(std::move(scene), how);
         log::info(fmt::format("{}, {:.2f} MiB on the device, {:.0f} MiB in all", what,
                               static_cast<double>(need.device) / (1 << 20),

@@ -40,7 +40,7 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
     p.rays = 0u;
     p.sampler = sampler_init(0u, as_uint_l(p.alive), as_uint_l(p.alive));
     p.pixel = p.depth = int_of(0);
-    p.self = int_of(-1);
+    p.self = source_none();
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);

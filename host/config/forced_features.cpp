@@ -29,6 +29,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_DISKS, 1),
         CLR_SETTING(HAS_TRIANGLES, 1),
         CLR_SETTING(HAS_BVH_SPHERES, 1),
+        CLR_SETTING(HAS_INSTANCES, 1),
         CLR_SETTING(HAS_VERTEX_NORMALS, 1),
         CLR_SETTING(HAS_UVS, 1),
 #define CLR_BSDF(KIND, kind, width, lobes, meaning) CLR_SETTING(HAS_##KIND, 1),
@@ -46,6 +47,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_BITMAPS_U8, 1),
         CLR_SETTING(HAS_BITMAPS_F32, 1),
         CLR_SETTING(HAS_CHECKERBOARDS, 1),
+        CLR_SETTING(HAS_ATTRIBUTES, 1),
         CLR_SETTING(HAS_AREA_EMITTERS, 1),
         CLR_SETTING(LIGHT_COUNT, CLR_MANY_LIGHTS),
         CLR_SETTING(HAS_ORIENTED_LIGHTS, 1),
@@ -71,6 +73,8 @@ const std::map<std::string, Setting> &settings() {
 const std::multimap<std::string, std::string> &dependents() {
     static const std::multimap<std::string, std::string> table = {
         {"HAS_UVS", "HAS_TANGENTS"},
+        {"HAS_TRIANGLES", "HAS_ATTRIBUTES"},
+        {"HAS_TRIANGLES", "HAS_INSTANCES"},
         {"HAS_TANGENTS", "HAS_BUMPMAP"},
         {"HAS_TANGENTS", "HAS_NORMALMAP"},
         {"HAS_GGX", "HAS_ROUGHCONDUCTOR"},

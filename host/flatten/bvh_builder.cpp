@@ -40,7 +40,7 @@ clr_real blocks_of(std::uint32_t count) {
 
 struct Bin {
     Box box;
-    std::uint32_t count = 0;
+    std::uint32_t count = 0; ///< by the weights of its primitives
 };
 
 /// The two boxes a node needs: of its primitives, and of their doubled centroids.
@@ -88,7 +88,7 @@ public:
         for (int axis = 0; axis < 3; ++axis) {
             Bin &bin = bins_[axis][std::min(int(position[axis]), bin_count_ - 1)];
             bin.box.grow(box);
-            ++bin.count;
+            bin.count += p.weight;
         }
     }
 
@@ -300,6 +300,14 @@ bool make_primitive(const Input &input, std::size_t index, Primitive &primitive)
         primitive.set(box, std::uint32_t(index));
         return in_range(t[0]) && in_range(t[1]) && in_range(t[2]) && has_area(t);
     }
+    if (index >= input.triangles.size() + input.spheres.size()) {
+        const BvhInstance &in =
+            input.instances[index - input.triangles.size() - input.spheres.size()];
+        box.lower = Point(in.lower);
+        box.upper = Point(in.upper);
+        primitive.set(box, std::uint32_t(index), BVH_WIDTH);
+        return in_range(in.lower) && in_range(in.upper) && in.lower.x <= in.upper.x;
+    }
     const BvhSphere &s = input.spheres[index - input.triangles.size()];
     // The sums round to nearest; one step outwards makes the box contain the sphere.
     const clr_real radius = std::nextafter(s.radius, BVH_COORDINATE_LIMIT);
@@ -342,10 +350,11 @@ std::size_t usable_primitives(const Input &input, bool parallel, std::span<Primi
 } // namespace bvh
 
 Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles, std::span<const BvhSphere> spheres,
-              const BvhOptions &options) {
-    const bvh::Input input{triangles, spheres};
-    bvh::LargeArray<bvh::Primitive> storage(triangles.size() + spheres.size());
-    const std::span<bvh::Primitive> all(storage.data(), triangles.size() + spheres.size());
+              const BvhOptions &options, std::span<const BvhInstance> instances) {
+    const bvh::Input input{triangles, spheres, instances};
+    const std::size_t count = triangles.size() + spheres.size() + instances.size();
+    bvh::LargeArray<bvh::Primitive> storage(count);
+    const std::span<bvh::Primitive> all(storage.data(), count);
     const std::span<bvh::Primitive> primitives =
         all.first(bvh::usable_primitives(input, options.parallel, all));
 

@@ -18,6 +18,11 @@ struct BvhSphere {
     uint prim = BVH_NO_PRIM;
 };
 
+/// An instance of the tree, of which only the box is known here: a leaf of its own.
+struct BvhInstance {
+    Vec3 lower{0.0f}, upper{0.0f};
+};
+
 /// What the search for a cheap tree believes, in units of one node visit.
 struct BvhOptions {
     clr_real node_cost = 1.0f;
@@ -46,14 +51,14 @@ struct Bvh {
     double cost = 0.0;
 };
 
-/// Triangle i has prim id i. Coordinates are already recentred and scaled by the caller.
-/// Binned SAH (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), which
-/// counts blocks in place of primitives, down to what one block holds; then the cheapest 8-wide
-/// tree found by dynamic programming (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on
-/// GPUs through compressed wide BVHs", 2017, section 3.1). The same input gives the same tree on
-/// any number of threads.
+/// Triangle i has prim id i, instance i is child i. Coordinates are already recentred and scaled by
+/// the caller. Binned SAH (Wald, "On fast construction of SAH-based bounding volume hierarchies",
+/// 2007), which counts blocks in place of primitives, down to what one block holds; then the
+/// cheapest 8-wide tree found by dynamic programming (Ylitie, Karras, Laine, "Efficient incoherent
+/// ray traversal on GPUs through compressed wide BVHs", 2017, section 3.1). The same input gives
+/// the same tree on any number of threads.
 [[nodiscard]] Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
-                            std::span<const BvhSphere> spheres = {},
-                            const BvhOptions &options = {});
+                            std::span<const BvhSphere> spheres = {}, const BvhOptions &options = {},
+                            std::span<const BvhInstance> instances = {});
 
 } // namespace clrender::inline CLR_PRECISION

@@ -279,7 +279,7 @@ private:
         BvhNode node{};
         for (int slot = 0; slot < kWidth; ++slot) {
             set_box(node, slot, {Point(BVH_EMPTY_BOUND), Point(-BVH_EMPTY_BOUND)});
-            node.child[slot] = bvh_child(BVH_CHILD_EMPTY, 0);
+            node.child[slot] = BVH_NO_CHILD;
         }
         node.parent = parent;
         return node;
@@ -308,9 +308,15 @@ private:
         return box;
     }
 
-    /// The reference to a block that fill_blocks fills later.
+    /// The reference to a block that fill_blocks fills later, or to an instance.
     [[nodiscard]] std::uint32_t emit_block(const Part &part) {
-        const bool spheres = input_.is_sphere(primitives_[part.begin]);
+        const Primitive &first = primitives_[part.begin];
+        if (input_.is_instance(first)) {
+            return bvh_child(
+                BVH_CHILD_INSTANCE,
+                std::uint32_t(first.index - input_.triangles.size() - input_.spheres.size()));
+        }
+        const bool spheres = input_.is_sphere(first);
         std::vector<Run> &runs = spheres ? sphere_runs_ : triangle_runs_;
         runs.push_back({part.begin, part.count});
         return bvh_child(spheres ? BVH_CHILD_SPHERES : BVH_CHILD_TRIANGLES,

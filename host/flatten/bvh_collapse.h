@@ -68,18 +68,19 @@ struct Box {
     }
 };
 
-/// One triangle (`index` into the triangles) or sphere (the number of triangles + its index).
+/// One triangle (`index` into the triangles), sphere (the number of triangles + its index) or
+/// instance (the number of both + its index). `weight` is its share of a block, in BVH_WIDTH-ths.
 struct Primitive {
     clr_real lower[3];
     std::uint32_t index;
     clr_real upper[3];
-    std::uint32_t unused;
+    std::uint32_t weight;
 
-    void set(const Box &box, std::uint32_t number) {
+    void set(const Box &box, std::uint32_t number, std::uint32_t share = 1) {
         *this = {{box.lower[0], box.lower[1], box.lower[2]},
                  number,
                  {box.upper[0], box.upper[1], box.upper[2]},
-                 0};
+                 share};
     }
     [[nodiscard]] Box box() const {
         Box box;
@@ -91,7 +92,8 @@ struct Primitive {
 static_assert(sizeof(Primitive) == 8 * sizeof(clr_real));
 
 /// A node of the binary tree over `Primitive`s [begin, begin + count). The two children lie side by
-/// side; a leaf has none and holds what fits into one block: up to eight primitives of one kind.
+/// side; a leaf has none and holds what fits into one block: up to eight triangles or spheres, or
+/// one instance.
 struct BinaryNode {
     Box box;
     std::uint32_t first_child = 0;
@@ -105,16 +107,24 @@ struct BinaryNode {
 struct Input {
     std::span<const std::array<Vec3, 3>> triangles;
     std::span<const BvhSphere> spheres;
+    std::span<const BvhInstance> instances;
 
-    [[nodiscard]] bool is_sphere(const Primitive &p) const { return p.index >= triangles.size(); }
+    [[nodiscard]] bool is_instance(const Primitive &p) const {
+        return p.index >= triangles.size() + spheres.size();
+    }
+    [[nodiscard]] bool is_sphere(const Primitive &p) const {
+        return p.index >= triangles.size() && !is_instance(p);
+    }
 
     /// Whether these fit into one block.
     [[nodiscard]] bool is_block(std::span<const Primitive> primitives) const {
-        return primitives.size() <= BVH_WIDTH &&
-               (triangles.empty() || spheres.empty() ||
-                std::all_of(primitives.begin(), primitives.end(), [&](const Primitive &p) {
-                    return is_sphere(p) == is_sphere(primitives[0]);
-                }));
+        const bool one_kind = (triangles.empty() || spheres.empty()) && instances.empty();
+        return primitives.size() <= 1 ||
+               (primitives.size() <= BVH_WIDTH &&
+                (one_kind ||
+                 std::all_of(primitives.begin(), primitives.end(), [&](const Primitive &p) {
+                     return !is_instance(p) && is_sphere(p) == is_sphere(primitives[0]);
+                 })));
     }
 };
 

@@ -38,10 +38,11 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     config.HAS_DISKS = any(flat.planars, [](const Planar &p) { return p.is_disk != 0; });
     config.HAS_TRIANGLES = flat.triangle_count > 0 ? 1 : 0;
     config.HAS_BVH_SPHERES = flat.has_bvh_spheres() ? 1 : 0;
+    config.HAS_INSTANCES = flat.instances.empty() ? 0 : 1;
     const bool has_hierarchy = config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
-    config.BRUTE_FORCE = has_hierarchy && sampling.brute_force ? 1 : 0;
+    config.BRUTE_FORCE = has_hierarchy && sampling.brute_force && flat.groups.empty() ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
-    config.HAS_UVS = flat.textures.empty() && !flat.has_tangents() ? 0 : 1;
+    config.HAS_UVS = flat.needs_uvs() ? 1 : 0;
     config.RECORD_TABLE = flat.lane_wise_count() <= CLR_TABLE_SIZE ? 1 : 0;
 }
 
@@ -96,6 +97,9 @@ void set_materials(const FlatScene &flat, KernelConfig &config) {
             break;
         case CLR_TEXTURE_CHECKERBOARD:
             config.HAS_CHECKERBOARDS = 1;
+            break;
+        case CLR_TEXTURE_ATTRIBUTE:
+            config.HAS_ATTRIBUTES = 1;
             break;
         }
 }

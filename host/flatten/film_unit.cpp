@@ -1,4 +1,5 @@
 #include "flatten_parts.h"
+#include "scene/mesh_attributes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +31,7 @@ double largest(const Image &image) {
     return size;
 }
 
-double largest(const Texture &texture) {
+double largest(const Texture &texture, const Scene &scene, const Emitter &emitter) {
     switch (texture.kind) {
     case TextureKind::constant:
         return largest(texture.value);
@@ -38,6 +39,12 @@ double largest(const Texture &texture) {
         return std::max(largest(texture.color0), largest(texture.color1));
     case TextureKind::bitmap:
         return largest(*texture.bitmap);
+    case TextureKind::attribute:
+        if (emitter.shape != none)
+            if (const MeshAttribute *attribute = find_attribute(
+                    *scene.shapes[static_cast<std::size_t>(emitter.shape)].mesh, texture.attribute))
+                return texture.scale * largest_value(*attribute);
+        break;
     }
     return 0;
 }
@@ -47,7 +54,7 @@ double largest_radiance(const Scene &scene, const Emitter &emitter, double unit)
     const double texture =
         emitter.radiance == none
             ? 1
-            : largest(scene.textures[static_cast<std::size_t>(emitter.radiance)]);
+            : largest(scene.textures[static_cast<std::size_t>(emitter.radiance)], scene, emitter);
     const double of_place = unit * unit / (near_point * near_point);
     switch (emitter.kind) {
     case EmitterKind::point:

@@ -6,6 +6,7 @@
 #include "config/sampling_options.h"
 #include "scene/scene.h"
 #include "shared/bsdf_parameters.h"
+#include "shared/instance.h"
 #include "shared/launch_data.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
@@ -28,6 +29,11 @@ struct Placement {
 
 /// The three corners of a triangle in the renderer's coordinates, front side anticlockwise.
 using TriangleCorners = std::array<Vec3, 3>;
+
+/// A group's triangles among FlatScene::corners, in its own coordinates.
+struct FlatGroup {
+    std::size_t first = 0, count = 0;
+};
 
 /// What of a scene a kernel is specialised on and its arrays do not show (see config_of()).
 struct SceneFacts {
@@ -61,6 +67,8 @@ struct FlatScene {
     /// What build_hierarchy() makes the tree of.
     std::vector<TriangleCorners> corners;
     std::vector<BvhSphere> bvh_spheres;
+    /// What it makes the groups' trees of. Until then Instance::root is the index of a group.
+    std::vector<FlatGroup> groups;
 
     /// Primitives that every ray tests.
     [[nodiscard]] std::size_t lane_wise_count() const {
@@ -71,6 +79,8 @@ struct FlatScene {
     }
     /// Whether some material's shading frame follows dp/du.
     [[nodiscard]] bool has_tangents() const;
+    /// Whether surfaces need coordinates: attributes of meshes do not.
+    [[nodiscard]] bool needs_uvs() const;
     /// The lane-wise sphere that is the only light, or none.
     [[nodiscard]] int sole_light_sphere() const;
     [[nodiscard]] std::size_t bytes() const;

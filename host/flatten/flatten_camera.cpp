@@ -124,6 +124,11 @@ double start_depth(Flattening &work, const FilmRays &rays) {
         if (depths.high > 0)
             nearest = std::min(nearest, depths.low);
     }
+    for (const Box &box : work.instance_boxes) {
+        const Range depths = box_range(box, eye, axis);
+        if (depths.high > 0)
+            nearest = std::min(nearest, depths.low);
+    }
     constexpr double margin = 0x1p-4, reach = 4, far_away = 16;
     const double before_all = std::isfinite(nearest) ? std::max(nearest - margin * unit, 0.0) : 0;
     const double middle = glm::dot(work.flat.placement.center - eye, axis);

@@ -1,4 +1,5 @@
 #include "light_list.h"
+#include "scene/mesh_attributes.h"
 #include "shape_parts.h"
 
 #include <algorithm>
@@ -25,6 +26,25 @@ double in_single(clr_real value) {
 
 glm::dvec3 in_single(const clr_real (&v)[3]) {
     return {in_single(v[0]), in_single(v[1]), in_single(v[2])};
+}
+
+/// Mean luminance of an attribute's values, by vertex or triangle.
+double mean_luminance(const MeshAttribute &attribute) {
+    const std::size_t count = attribute.values.size() / attribute.channels;
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float *value = &attribute.values[i * attribute.channels];
+        sum += attribute.channels == 1 ? value[0] : luminance({value[0], value[1], value[2]});
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+/// Mean luminance of a texture on a shape.
+double mean_luminance(const Texture &texture, const Shape &shape) {
+    if (texture.kind != TextureKind::attribute)
+        return mean_luminance(texture);
+    const MeshAttribute *attribute = find_attribute(*shape.mesh, texture.attribute);
+    return attribute == nullptr ? 0 : texture.scale * mean_luminance(*attribute);
 }
 
 /// The cone of the normals by which a triangle shines: its own, or those of its vertices.
@@ -87,6 +107,7 @@ void add_triangles(Flattening &work, const AreaEmitter &emitter, EmitterInfo &in
         const Vec3 e1 = corner[1] - corner[0];
         const Vec3 e2 = corner[2] - corner[0];
         LightTriangle triangle{};
+        triangle.triangle = static_cast<uint>(t);
         store(triangle.v0, glm::dvec3(corner[0]));
         store(triangle.e1, glm::dvec3(e1));
         store(triangle.e2, glm::dvec3(e2));
@@ -170,7 +191,8 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     AreaEmitter emitter;
     emitter.shape = source.shape;
     emitter.radiance =
-        mean_luminance(work.scene.textures[static_cast<std::size_t>(source.radiance)]);
+        mean_luminance(work.scene.textures[static_cast<std::size_t>(source.radiance)],
+                       work.scene.shapes[static_cast<std::size_t>(source.shape)]);
     info.texture = emitter.base.texture =
         flatten_texture(work, source.radiance, Rgb{0.0}, info.radiance);
     std::copy_n(info.radiance, 3, emitter.base.radiance);

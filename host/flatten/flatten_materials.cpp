@@ -118,13 +118,18 @@ void flatten_materials(Flattening &work) {
     FlatScene &flat = work.flat;
     MaterialPacker packer(work);
     // Only BSDFs that some shape shows are flattened; equal sides share one material.
-    for (const Shape &shape : work.scene.shapes) {
+    const auto take = [&](const Shape &shape) {
         const uint front = packer.material_of(shape.bsdf, {false, false});
         const uint back = packer.material_of(shape.bsdf, {true, false});
         if (flat.materials.size() >= CLR_NO_MATERIAL)
             throw InputError(shape.where, "more than 65534 different BSDFs are not supported");
         work.sides_of_bsdf[shape.bsdf] = front | back << 16;
-    }
+    };
+    for (const Shape &shape : work.scene.shapes)
+        take(shape);
+    for (const ShapeGroup &group : work.scene.groups)
+        for (const Shape &shape : group.shapes)
+            take(shape);
     fill_parameter_pool(packer.packed, work);
     share_dielectric_fields(flat);
 }

@@ -5,6 +5,7 @@
 #include "scene/shape_bounds.h"
 
 #include <map>
+#include <string>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -18,13 +19,16 @@ struct Flattening {
     const Scene &scene;
     const SamplingOptions &options;
     FlatScene flat{};
-    std::vector<Box> boxes{};                 ///< by Scene::shapes, in world coordinates
-    std::map<int, uint> texture_index{};      ///< by Scene::textures
-    std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
-    std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
-    std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none
+    std::vector<Box> boxes{};                      ///< by Scene::shapes, in world coordinates
+    std::vector<Box> instance_boxes{};             ///< by Scene::instances, likewise
+    std::map<int, uint> texture_index{};           ///< by Scene::textures
+    std::map<std::string, uint> attribute_index{}; ///< by name, of those that shapes show
+    std::map<int, uint> sides_of_bsdf{};           ///< by Scene::bsdfs, as ShapeInfo::materials
+    std::map<int, uint> primitive_of_shape{};      ///< by Scene::shapes, spheres and planars
+    std::vector<int> lane_wise_shapes{}; ///< Scene::shapes by lane-wise primitive, or none
     std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
+    bool vertex_normals = false;    ///< some mesh has them, so all have the arrays
     bool spheres_in_bvh = false;    ///< there are too many to test them one by one
     bool rectangles_in_bvh = false; ///< likewise, with the disks; as triangles
 
@@ -33,16 +37,18 @@ struct Flattening {
         return is_forced(options.forced_features, name);
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
-    [[nodiscard]] bool needs_uvs() const {
-        return !flat.textures.empty() || flat.has_tangents() || wants("HAS_UVS");
-    }
+    [[nodiscard]] bool needs_uvs() const { return flat.needs_uvs() || wants("HAS_UVS"); }
 };
 
 /// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
 /// inverse of their sizes, and the unit is their median distance from it. Neither depends on the
 /// camera, nor do they move for something that is far away or huge.
-/// `boxes` are those of the scene's shapes.
-Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes);
+/// `boxes` are those of the scene's shapes, `instance_boxes` those of its instances.
+Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes,
+                           const std::vector<Box> &instance_boxes);
+
+/// Fills attribute_index.
+void number_attributes(Flattening &work);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
 void flatten_materials(Flattening &work);
@@ -56,6 +62,9 @@ uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *consta
 
 /// Spheres, planars, meshes and the BVH; shape infos name emitters by Scene's index.
 void flatten_shapes(Flattening &work);
+
+/// The meshes of groups, behind those of the scene, and the places of their instances.
+void flatten_instances(Flattening &work);
 
 /// The lights to sample, the emitters to meet.
 void flatten_lights(Flattening &work);

@@ -1,11 +1,9 @@
-#include "log.h"
 #include "scene/shape_bounds.h"
 #include "shape_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fmt/core.h>
 #include <limits>
 
 namespace clrender::inline CLR_PRECISION {
@@ -200,25 +198,12 @@ void flatten_shapes(Flattening &work) {
     flatten_lane_wise_spheres(work);
     flatten_planars(work);
     flatten_meshes(work);
+    flatten_instances(work);
     flat.frame.prim_bvh_sphere =
         static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
     flatten_bvh_spheres(work);
 
     make_records(work);
-}
-
-void build_hierarchy(FlatScene &flat) {
-    Bvh bvh = build_bvh(flat.corners, flat.bvh_spheres);
-    // An empty list in place of an empty vector would keep the memory.
-    flat.corners = std::vector<TriangleCorners>();
-    flat.bvh_spheres = std::vector<BvhSphere>();
-    flat.nodes = std::move(bvh.nodes);
-    flat.triangle_blocks = std::move(bvh.triangle_blocks);
-    flat.sphere_blocks = std::move(bvh.sphere_blocks);
-    flat.frame.triangle_blocks = static_cast<uint>(flat.triangle_blocks.size());
-    flat.frame.sphere_blocks = static_cast<uint>(flat.sphere_blocks.size());
-    if (bvh.degenerate > 0)
-        log::warn(fmt::format("{} triangles or spheres without area are left out", bvh.degenerate));
 }
 
 } // namespace clrender::inline CLR_PRECISION

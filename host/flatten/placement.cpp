@@ -46,7 +46,8 @@ void add_mesh(const Shape &shape, double weight, std::vector<Part> &parts) {
 
 /// The pieces, each weighted by the inverse of its size: the smaller it is, the more precision it
 /// needs. A mesh weighs as much as a sphere of its size, wherever most of its small triangles are.
-std::vector<Part> parts_of(const Scene &scene, const std::vector<Box> &boxes) {
+std::vector<Part> parts_of(const Scene &scene, const std::vector<Box> &boxes,
+                           const std::vector<Box> &instance_boxes) {
     struct Whole {
         const Shape *shape;
         double size;
@@ -60,7 +61,10 @@ std::vector<Part> parts_of(const Scene &scene, const std::vector<Box> &boxes) {
         wholes.push_back({&scene.shapes[i], size});
         sizes.push_back(size);
     }
-    if (wholes.empty())
+    for (const Box &box : instance_boxes)
+        if (!box.empty() && diagonal(box) > 0)
+            sizes.push_back(diagonal(box));
+    if (sizes.empty())
         return {};
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
@@ -83,6 +87,10 @@ std::vector<Part> parts_of(const Scene &scene, const std::vector<Box> &boxes) {
             break;
         }
     }
+    for (const Box &box : instance_boxes)
+        if (!box.empty() && diagonal(box) > 0)
+            parts.push_back(
+                {(box.low + box.high) * 0.5, diagonal(box), 1 / std::max(diagonal(box), least)});
     return parts;
 }
 
@@ -106,9 +114,10 @@ template <typename Value> double weighted_median(const std::vector<Part> &parts,
 
 } // namespace
 
-Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes) {
+Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes,
+                           const std::vector<Box> &instance_boxes) {
     Placement placement;
-    const std::vector<Part> parts = parts_of(scene, boxes);
+    const std::vector<Part> parts = parts_of(scene, boxes, instance_boxes);
     if (parts.empty())
         return placement;
     for (int axis = 0; axis < 3; ++axis)

@@ -100,6 +100,7 @@ ShadowlessPlanars::ShadowlessPlanars(const Scene &scene, double touching)
     lit_from_outside_ = std::any_of(scene.emitters.begin(), scene.emitters.end(), is_outside);
     if (lit_from_outside_)
         return; // nobody asks for the boxes
+    instance_boxes_ = instance_boxes(scene);
     for (const Shape &shape : scene.shapes) {
         if (shape.kind != ShapeKind::mesh || boxes_.count(shape.mesh.get()) != 0)
             continue;
@@ -146,6 +147,13 @@ bool ShadowlessPlanars::is_outer(const Shape &planar) const {
             add_mesh(shape, sides);
             break;
         }
+        if (sides.both())
+            return false;
+    }
+    for (const Box &box : instance_boxes_) {
+        if (!box.empty())
+            for (const glm::dvec3 &corner : box.corners())
+                sides.add(corner);
         if (sides.both())
             return false;
     }

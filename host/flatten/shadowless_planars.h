@@ -31,6 +31,7 @@ private:
     bool lit_from_outside_ = false;
     int sole_light_ = none;
     std::map<const Mesh *, Box> boxes_; ///< in their own space
+    std::vector<Box> instance_boxes_;
 };
 
 } // namespace clrender::inline CLR_PRECISION

@@ -37,6 +37,7 @@ Scene read_scene(const std::string &path, const LoadOptions &options) {
 std::uint64_t flat_bytes_estimate(const Scene &scene) {
     constexpr std::uint64_t triangle_bytes = 250;
     constexpr std::uint64_t vertex_bytes = 40;
+    constexpr std::uint64_t instance_bytes = 400;
     constexpr std::uint64_t texel_bytes_u8 = 8;
     constexpr std::uint64_t texel_bytes_f32 = 24;
     constexpr std::uint64_t map_bytes = 48;
@@ -44,10 +45,16 @@ std::uint64_t flat_bytes_estimate(const Scene &scene) {
         return static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
     };
     std::uint64_t bytes = 0;
-    for (const Shape &shape : scene.shapes)
-        if (shape.mesh)
-            bytes += triangle_bytes * shape.mesh->triangles.size() +
-                     vertex_bytes * shape.mesh->positions.size();
+    const auto add_meshes = [&](const std::vector<Shape> &shapes) {
+        for (const Shape &shape : shapes)
+            if (shape.mesh)
+                bytes += triangle_bytes * shape.mesh->triangles.size() +
+                         vertex_bytes * shape.mesh->positions.size();
+    };
+    add_meshes(scene.shapes);
+    for (const ShapeGroup &group : scene.groups)
+        add_meshes(group.shapes);
+    bytes += instance_bytes * scene.instances.size();
     for (const Texture &texture : scene.textures)
         if (texture.bitmap)
             bytes += pixels(*texture.bitmap) *

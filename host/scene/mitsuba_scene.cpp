@@ -68,7 +68,7 @@ void SceneReader::check_children(int object) {
 }
 
 void SceneReader::warn_of_missing(Properties &root) const {
-    if (scene_.shapes.empty())
+    if (scene_.shapes.empty() && scene_.instances.empty())
         log::warn(root.where(), "the scene has no shapes");
     if (scene_.emitters.empty() && scene_.integrator.kind != IntegratorKind::depth)
         log::warn(root.where(), "the scene has no light: the picture will be black");
@@ -97,6 +97,7 @@ void SceneReader::read_files() {
     tbb::parallel_for(std::size_t(0), shapes_from_files_.size(), [&](std::size_t i) {
         follow_transform(scene_.shapes[shapes_from_files_[i]]);
     });
+    finish_groups();
 }
 
 void SceneReader::read_chosen_sensor(Properties &root) {
@@ -113,9 +114,12 @@ void SceneReader::read_chosen_sensor(Properties &root) {
                   fmt::format("the scene has {} sensors: only the first one is used (--sensor 0 to "
                               "{} chooses)",
                               count, count - 1));
-    if (sensors.empty())
+    if (sensors.empty()) {
         place_default_sensor();
-    else if (!attempt([&] { read_sensor(sensors[chosen]->object); }))
+        return;
+    }
+    const bool is_read = attempt([&] { read_sensor(sensors[chosen]->object); });
+    if (!is_read)
         check_children(sensors[chosen]->object);
 }
 

@@ -23,7 +23,7 @@ namespace clrender::mitsuba {
 class SceneReader {
 public:
     /// Where the document asks for all faults, what is wrong with one object does not keep the
-    /// others from being read. `sensor`: which of several; unless stated the first.
+    /// others from being read. `sensor`: the one to look through, counted from 0; else the first.
     explicit SceneReader(const Document &document, std::optional<int> sensor = {})
         : document_(document), all_faults_(document.all_faults), chosen_sensor_(sensor),
           faults_(document.faults) {}
@@ -52,6 +52,10 @@ private:
     int read_checkerboard(Properties &properties, SpectrumUse use);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     int read_raw_constant(Properties &properties, SpectrumUse use);
+    // mitsuba_attributes.cpp
+    int read_mesh_attribute(Properties &properties);
+    /// Notes the attributes that a shape's textures show, to be checked when its mesh is read.
+    void read_attributes_of(int object, Shape &shape);
     /// The colour or texture `name` of an object, or none.
     int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
     /// The texture of the numbers `name`.
@@ -91,6 +95,11 @@ private:
     void read_mesh_file(Properties &properties, Shape &shape);
     void read_surface(Properties &properties, Shape &shape);
 
+    // mitsuba_instances.cpp
+    int read_group(int object);
+    void read_instance(int object);
+    void finish_groups();
+
     // mitsuba_emitters.cpp
     void read_emitter(int object);
     int read_area_emitter(int object, int shape);
@@ -100,6 +109,8 @@ private:
     void read_spot(Properties &properties, Emitter &emitter);
     void read_directional(Properties &properties, Emitter &emitter);
     void read_projector(Properties &properties, Emitter &emitter);
+    /// Fails where the texture `name` of a light is that of a mesh.
+    void check_projected(const Properties &properties, const std::string &name, int texture) const;
 
     // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
     void read_sensor(int object);
@@ -121,6 +132,15 @@ private:
     std::set<int> open_bsdfs_, area_emitters_;
     SceneFiles files_;
     std::vector<std::size_t> shapes_from_files_; ///< places in Scene::shapes
+
+    /// A group whose files may be still to read.
+    struct ReadGroup {
+        ShapeGroup shapes;
+        std::vector<bool> from_files; ///< by `shapes`: a mesh file has it
+        std::vector<Shape> copied;    ///< each instance adds one to the scene
+    };
+    std::vector<ReadGroup> read_groups_; ///< as Scene::groups
+    std::map<int, int> groups_;          ///< by object
 };
 
 /// The metal that a conductor names; it then states neither eta nor k.
@@ -144,7 +164,10 @@ ReconstructionFilter read_filter(const Document &document, int object);
 /// Gives a shape from a mesh file the normals that Mitsuba gives it after `to_world`.
 void follow_transform(Shape &shape);
 
-/// The world-space box around all shapes; false if there are none.
-bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest);
+/// True if a transformation turns, mirrors and scales alone, as far as float32 exporters manage.
+bool is_similarity(const glm::dmat3 &m);
+
+/// The world-space box around all shapes and instances; false if there are none.
+bool bounds_of(const Scene &scene, glm::dvec3 &lowest, glm::dvec3 &highest);
 
 } // namespace clrender::mitsuba

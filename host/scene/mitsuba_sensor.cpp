@@ -136,7 +136,7 @@ void SceneReader::place_default_sensor() {
     scene_.sensor.fov = 45;
     glm::dvec3 lowest(0);
     glm::dvec3 highest(0);
-    if (bounds_of(scene_.shapes, lowest, highest)) {
+    if (bounds_of(scene_, lowest, highest)) {
         // Far enough along -z for the largest extent of the scene to fill the picture.
         const glm::dvec3 extent = highest - lowest;
         const double largest = std::max({extent.x, extent.y, extent.z});

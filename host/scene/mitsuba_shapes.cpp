@@ -1,10 +1,12 @@
-/// Shapes: sphere, rectangle, disk, cube, obj, ply.
+/// Shapes: sphere, rectangle, disk, cube, obj, ply, serialized; groups and instances lead to
+/// mitsuba_instances.cpp.
 
 #include "cube_mesh.h"
 #include "mesh_normals.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
+#include "shape_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +17,16 @@ namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> shape_types{"sphere", "rectangle", "disk", "cube", "obj", "ply"};
+const std::vector<std::string> shape_types{"sphere", "rectangle",  "disk",       "cube",    "obj",
+                                           "ply",    "serialized", "shapegroup", "instance"};
 
-/// True if the columns have the same length and are at right angles, as far as float32 exporters
-/// manage.
+void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
+    lowest = glm::min(lowest, point);
+    highest = glm::max(highest, point);
+}
+
+} // namespace
+
 bool is_similarity(const glm::dmat3 &m) {
     constexpr double tolerance = 1e-4;
     const double size = glm::length(m[0]);
@@ -31,18 +39,19 @@ bool is_similarity(const glm::dmat3 &m) {
     return true;
 }
 
-void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
-    lowest = glm::min(lowest, point);
-    highest = glm::max(highest, point);
-}
-
-} // namespace
-
 void SceneReader::read_shape(int object) {
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
     if (std::find(shape_types.begin(), shape_types.end(), type) == shape_types.end())
         fail_unsupported(document_, properties.object(), shape_types);
+    if (type == "shapegroup") {
+        read_group(object);
+        return;
+    }
+    if (type == "instance") {
+        read_instance(object);
+        return;
+    }
 
     Shape shape;
     shape.id = properties.object().id;
@@ -64,6 +73,7 @@ void SceneReader::read_shape(int object) {
             read_mesh_file(properties, shape);
     }
     read_surface(properties, shape);
+    read_attributes_of(object, shape);
     properties.finish();
     scene_.shapes.push_back(std::move(shape));
 }
@@ -81,10 +91,17 @@ void SceneReader::read_sphere(Properties &properties, Shape &shape) {
 }
 
 void SceneReader::read_mesh_file(Properties &properties, Shape &shape) {
-    const auto format = properties.object().type == "obj" ? MeshFormat::obj : MeshFormat::ply;
+    const std::string &type = properties.object().type;
+    const auto format = type == "obj"   ? MeshFormat::obj
+                        : type == "ply" ? MeshFormat::ply
+                                        : MeshFormat::serialized;
     MeshReadOptions options;
     options.face_normals = properties.boolean("face_normals", false);
-    options.flip_tex_coords = properties.boolean("flip_tex_coords", format == MeshFormat::obj);
+    if (format == MeshFormat::serialized)
+        options.shape_index = static_cast<int>(
+            properties.integer("shape_index", 0, 0, std::numeric_limits<int>::max()));
+    else
+        options.flip_tex_coords = properties.boolean("flip_tex_coords", format == MeshFormat::obj);
     const std::string path = properties.file("filename");
     shapes_from_files_.push_back(scene_.shapes.size());
     shape.mesh = files_.mesh(format, path, options, properties.where("filename"));
@@ -130,10 +147,10 @@ void follow_transform(Shape &shape) {
     shape.mesh = std::move(placed);
 }
 
-bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 &highest) {
+bool bounds_of(const Scene &scene, glm::dvec3 &lowest, glm::dvec3 &highest) {
     lowest = glm::dvec3(std::numeric_limits<double>::infinity());
     highest = -lowest;
-    for (const Shape &shape : shapes) {
+    for (const Shape &shape : scene.shapes) {
         const glm::dmat4 &m = shape.to_world;
         if (shape.kind == ShapeKind::mesh) {
             for (const glm::dvec3 &position : shape.mesh->positions)
@@ -152,6 +169,10 @@ bool bounds_of(const std::vector<Shape> &shapes, glm::dvec3 &lowest, glm::dvec3 
         }
         extend(lowest, highest, glm::dvec3(m[3]) - half);
         extend(lowest, highest, glm::dvec3(m[3]) + half);
+    }
+    for (const Box &box : instance_boxes(scene)) {
+        extend(lowest, highest, box.low);
+        extend(lowest, highest, box.high);
     }
     return lowest.x <= highest.x;
 }

@@ -139,6 +139,8 @@ int SceneReader::read_new_texture(int object, SpectrumUse use) {
         index = read_bitmap(properties, use);
     else if (type == "checkerboard")
         index = read_checkerboard(properties, use);
+    else if (type == "mesh_attribute")
+        index = read_mesh_attribute(properties);
     else if (type == "rawconstant")
         index = read_raw_constant(properties, use);
     else if (type == "uniform" || type == "srgb" || type == "d65")

@@ -17,7 +17,7 @@
 
 namespace clrender {
 
-enum class TextureKind { constant, bitmap, checkerboard };
+enum class TextureKind { constant, bitmap, checkerboard, attribute };
 enum class TextureFilter { bilinear, nearest };
 enum class TextureWrap { repeat, mirror, clamp };
 
@@ -34,8 +34,22 @@ struct Texture {
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard
+    std::string attribute;        ///< attribute: its name, as MeshAttribute has it
+    double scale = 1;             ///< attribute
     glm::dmat3 to_uv{1.0};
 };
+
+/// What a mesh holds for textures: a colour or a number by vertex, which is interpolated, or by
+/// triangle.
+struct MeshAttribute {
+    std::string name;          ///< begins with "vertex_" or "face_"
+    std::size_t channels = 3;  ///< 1 or 3
+    double whole = 0;          ///< of integers the largest that their type holds, else 0
+    std::vector<float> values; ///< `channels` a vertex or triangle; empty: nothing asks for it
+};
+
+/// Whether an attribute of that name is one of faces.
+bool is_face_attribute(const std::string &name);
 
 /// An indexed triangle mesh in its own object space, before Shape::to_world.
 struct Mesh {
@@ -43,6 +57,7 @@ struct Mesh {
     std::vector<glm::vec3> normals; ///< per vertex, unit length, or empty: flat
     std::vector<glm::vec2> uvs;     ///< per vertex, or empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<MeshAttribute> attributes;
     bool has_computed_normals = false; ///< the file states none: they are smooth_normals()
 };
 
@@ -63,11 +78,24 @@ struct Shape {
     bool flip_normals = false;
     int bsdf = none;    ///< index; the readers give a default diffuse .5 BSDF to shapes without one
     int emitter = none; ///< index of an area emitter
+    std::vector<int> attribute_textures; ///< those of kind `attribute` that it shows
     std::string id;
     SourceLocation where;
 };
 
 enum class FovAxis { x, y, diagonal, smaller, larger };
+/// Shapes that are shown by instances alone, as often as there are: rectangles and meshes, placed
+/// in the group's own coordinates. None emits.
+struct ShapeGroup {
+    std::vector<Shape> shapes;
+};
+
+/// A group in a place of the scene. Normals go through the inverse transpose of `to_world`, also if
+/// it mirrors, after all that the group's shapes do to them.
+struct ShapeInstance {
+    int group = none; ///< index
+    glm::dmat4x3 to_world{1.0};
+};
 
 enum class EmitterKind { point, area, constant, envmap, spot, directional, projector };
 
@@ -126,7 +154,7 @@ enum class PixelFormat { luminance, luminance_alpha, rgb, rgba, xyz, xyza };
 struct FilmSettings {
     int width = 768, height = 576;
     int crop_x = 0, crop_y = 0, crop_width = 0,
-        crop_height = 0; ///< resolved: never 0 after reading
+        crop_height = 0;        ///< resolved: never 0 after reading
     bool sample_border = false; ///< samples lie outside of the crop window as well, as far as the
                                 ///< filter reaches
     ReconstructionFilter filter;
@@ -151,6 +179,8 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<Bsdf> bsdfs;
     std::vector<Shape> shapes;
+    std::vector<ShapeGroup> groups;
+    std::vector<ShapeInstance> instances;
     std::vector<Emitter> emitters;
     Sensor sensor;
     FilmSettings film;

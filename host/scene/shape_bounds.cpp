@@ -1,6 +1,7 @@
 #include "shape_bounds.h"
 
 #include <cmath>
+#include <tbb/parallel_for.h>
 
 namespace clrender {
 
@@ -34,6 +35,42 @@ Box shape_box(const Shape &shape) {
     return box;
 }
 
+Box group_box(const ShapeGroup &group) {
+    Box box;
+    for (const Shape &shape : group.shapes)
+        box.add(shape_box(shape));
+    return box;
+}
+
+Box placed_box(const ShapeInstance &instance, const Box &group) {
+    Box box;
+    if (group.empty())
+        return box;
+    for (const glm::dvec3 &corner : group.corners())
+        box.add(instance.to_world * glm::dvec4(corner, 1));
+    return box;
+}
+
+std::vector<Box> instance_boxes(const Scene &scene) {
+    std::vector<Box> groups;
+    for (const ShapeGroup &group : scene.groups)
+        groups.push_back(group_box(group));
+    std::vector<Box> boxes(scene.instances.size());
+    tbb::parallel_for(std::size_t(0), boxes.size(), [&](std::size_t i) {
+        const ShapeInstance &instance = scene.instances[i];
+        boxes[i] = placed_box(instance, groups[static_cast<std::size_t>(instance.group)]);
+    });
+    return boxes;
+}
+
+Range box_range(const Box &box, const glm::dvec3 &origin, const glm::dvec3 &axis) {
+    Range range;
+    if (!box.empty())
+        for (const glm::dvec3 &corner : box.corners())
+            range.add(glm::dot(corner - origin, axis));
+    return range;
+}
+
 Range shape_range(const Shape &shape, const Box &box, const glm::dvec3 &origin,
                   const glm::dvec3 &axis) {
     switch (shape.kind) {
@@ -46,11 +83,7 @@ Range shape_range(const Shape &shape, const Box &box, const glm::dvec3 &origin,
     case ShapeKind::mesh:
         break;
     }
-    Range range;
-    if (!box.empty())
-        for (const glm::dvec3 &corner : box.corners())
-            range.add(glm::dot(corner - origin, axis));
-    return range;
+    return box_range(box, origin, axis);
 }
 
 } // namespace clrender

@@ -17,6 +17,10 @@ struct Box {
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
+    void add(const Box &other) {
+        low = glm::min(low, other.low);
+        high = glm::max(high, other.high);
+    }
     [[nodiscard]] bool empty() const { return !(low.x <= high.x); }
     [[nodiscard]] std::array<glm::dvec3, 8> corners() const {
         std::array<glm::dvec3, 8> all;
@@ -41,10 +45,22 @@ struct Range {
 /// The box of a shape; of a disk that of the rectangle around it.
 Box shape_box(const Shape &shape);
 
+/// The box of a group in its own coordinates.
+Box group_box(const ShapeGroup &group);
+
+/// The box of a box that an instance places.
+Box placed_box(const ShapeInstance &instance, const Box &group);
+
+/// The boxes of the scene's instances, in their order.
+std::vector<Box> instance_boxes(const Scene &scene);
+
 /// How far a shape reaches along `axis`, measured from `origin`: for a sphere exactly, for others
 /// as far as their `box` does, which is shape_box().
 Range shape_range(const Shape &shape, const Box &box, const glm::dvec3 &origin,
                   const glm::dvec3 &axis);
+
+/// The same of a box.
+Range box_range(const Box &box, const glm::dvec3 &origin, const glm::dvec3 &axis);
 
 /// Radius of a sphere: the cube root of the volume that to_world gives a unit cube.
 double sphere_radius(const Shape &shape);

@@ -29,7 +29,9 @@
 #define BVH_CHILD_INNER 0u
 #define BVH_CHILD_TRIANGLES 1u
 #define BVH_CHILD_SPHERES 2u
-#define BVH_CHILD_EMPTY 3u
+#define BVH_CHILD_INSTANCE 3u
+/* An empty child, whose box no ray meets: no other names the root. */
+#define BVH_NO_CHILD 0u
 
 CLR_PRECISION_BEGIN
 
@@ -55,7 +57,7 @@ typedef struct CLR_ALIGNED(32) SphereBlock {
 } SphereBlock;
 CLR_STATIC_WORDS(SphereBlock, 40);
 
-/* A reference to a node or a block; `index` has 30 bits. */
+/* A reference to a node, a block or an instance; `index` has 30 bits. */
 static inline uint bvh_child(uint kind, uint index) {
     return (kind << 30) | index;
 }

@@ -170,7 +170,7 @@ typedef struct {
     clr_real v0[3];
     clr_word smooth;
     clr_real e1[3];
-    clr_real pad0;
+    clr_word triangle; /* its number among the scene's */
     clr_real e2[3];
     clr_real normals[3][3];
     clr_real uvs[3][2];
@@ -222,13 +222,17 @@ CLR_STATIC_WORDS(LightNode, 24);
 #define CLR_TEXTURE_BITMAP_U8 0u
 #define CLR_TEXTURE_BITMAP_F32 1u
 #define CLR_TEXTURE_CHECKERBOARD 2u
+#define CLR_TEXTURE_ATTRIBUTE 3u
 
 #define CLR_WRAP_REPEAT 0u
 #define CLR_WRAP_MIRROR 1u
 #define CLR_WRAP_CLAMP 2u
 
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
-   bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. */
+   bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. An
+   attribute of meshes is number `offset` of `width`, constant over a face where it is `nearest`,
+   and scaled by color0[0]: its triple of vertex or triangle i of shape s is number
+   attribute_places[s * width + offset] + i, modulo 2^32. */
 #define CLR_DECODE_LINEAR 0u
 #define CLR_DECODE_SRGB 1u
 #define CLR_DECODE_HALF 2u /* added: the same, rounded to half precision */
