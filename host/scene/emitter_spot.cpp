@@ -27,6 +27,7 @@ void SceneReader::read_spot(Properties &properties, Emitter &emitter) {
         return;
     if (scene_.textures[static_cast<std::size_t>(emitter.radiance)].kind == TextureKind::constant)
         properties.fail("texture", "is a plain colour, expected a texture such as a \"bitmap\"");
+    check_projected(properties, "texture", emitter.radiance);
     if (!(emitter.cutoff_angle < 90))
         properties.fail("cutoff_angle", "is too wide for a texture, expected degrees below 90");
 }

@@ -24,24 +24,6 @@ bool is_environment(const Emitter &emitter) {
     return emitter.kind == EmitterKind::constant || emitter.kind == EmitterKind::envmap;
 }
 
-/// What is known and not built: what it lacks, or what serves instead.
-std::string reason_against(const std::string &type) {
-    if (type == "collimated")
-        return "is a beam without width, which no path meets by chance, expected a \"spot\" with a "
-               "small cutoff_angle";
-    if (type == "sunsky" || type == "timed_sunsky" || type == "sky" || type == "sun")
-        return "needs the tables of a model of the sky, which clrender does not have, expected an "
-               "\"envmap\" made of it, and a \"directional\" for the sun";
-    return {};
-}
-
-[[noreturn]] void refuse(const Properties &properties, const std::vector<std::string> &types) {
-    const std::string reason = reason_against(properties.object().type);
-    if (!reason.empty())
-        throw UnsupportedError(properties.where(), properties.description() + " " + reason);
-    fail_unsupported(properties.document(), properties.object(), types);
-}
-
 /// Weights steer the sampling of lights, not the picture, unless a light is never sampled.
 void accept_sampling_weight(Properties &properties) {
     if (!(properties.number("sampling_weight", 1) > 0))
@@ -80,7 +62,7 @@ void SceneReader::read_emitter(int object) {
     } else if (type == "projector") {
         read_projector(properties, emitter);
     } else {
-        refuse(properties, emitter_types);
+        fail_unsupported(document_, properties.object(), emitter_types);
     }
     accept_sampling_weight(properties);
     properties.finish();
@@ -129,7 +111,7 @@ int SceneReader::read_area_emitter(int object, int shape) {
         if (std::count(emitter_types.begin(), emitter_types.end(), type) > 0)
             throw InputError(properties.where(), properties.description() +
                                                      " inside of a shape, expected an area light");
-        refuse(properties, {"area", "directionalarea"});
+        fail_unsupported(document_, properties.object(), {"area", "directionalarea"});
     }
     if (!area_emitters_.insert(object).second)
         throw InputError(properties.where(), properties.description() +

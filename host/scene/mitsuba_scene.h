@@ -109,6 +109,8 @@ private:
     void read_spot(Properties &properties, Emitter &emitter);
     void read_directional(Properties &properties, Emitter &emitter);
     void read_projector(Properties &properties, Emitter &emitter);
+    /// Fails where the texture `name` of a light is that of a mesh.
+    void check_projected(const Properties &properties, const std::string &name, int texture) const;
 
     // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
     void read_sensor(int object);

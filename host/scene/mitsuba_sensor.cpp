@@ -51,24 +51,6 @@ void check_unscaled(const Properties &properties, const glm::dmat4 &to_world) {
                                         "translations");
 }
 
-[[noreturn]] void refuse_sensor(const Properties &properties) {
-    const std::string &type = properties.object().type;
-    if (type == "batch")
-        throw UnsupportedError(properties.where(),
-                               properties.description() +
-                                   " joins several sensors to one picture, expected these in its "
-                                   "place: --sensor chooses one of them");
-    for (const char *meter : {"irradiancemeter", "radiancemeter", "mradiancemeter", "fluencemeter",
-                              "distant", "hdistant", "mdistant", "distantflux"})
-        if (type == meter)
-            throw UnsupportedError(properties.where(),
-                                   properties.description() +
-                                       " is a meter and takes no picture, expected a "
-                                       "\"perspective\", \"thinlens\" or \"orthographic\" camera");
-    fail_unsupported(properties.document(), properties.object(),
-                     {"perspective", "thinlens", "orthographic"});
-}
-
 /// The only child of a kind, or none.
 int single_child(Properties &properties, const std::string &tag) {
     const auto found = properties.children(tag);
@@ -108,7 +90,8 @@ void SceneReader::read_sensor(int object) {
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
     if (type != "perspective" && type != "thinlens" && type != "orthographic")
-        refuse_sensor(properties);
+        fail_unsupported(document_, properties.object(),
+                         {"perspective", "thinlens", "orthographic"});
 
     Sensor &sensor = scene_.sensor;
     sensor = Sensor();

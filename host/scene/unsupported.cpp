@@ -15,7 +15,10 @@ constexpr const char *mesh = "a mesh: \"ply\" or \"obj\"";
 constexpr const char *tubes = "a mesh of the tubes: \"ply\" or \"obj\"";
 constexpr const char *camera = "\"perspective\"";
 
-constexpr std::array<Unsupported, 62> table{{
+constexpr const char *sky = "an \"envmap\" of the sky, whose tables clrender does not have, and a "
+                            "\"directional\" for the sun";
+
+constexpr std::array<Unsupported, 68> table{{
     {"bsdf", "phong", "\"roughplastic\""},
     {"bsdf", "ward", "\"roughconductor\""},
     {"bsdf", "coating", "\"plastic\""},
@@ -42,6 +45,12 @@ constexpr std::array<Unsupported, 62> table{{
     {"shape", "ellipsoidsmesh", "\"sphere\""},
     {"shape", "heightfield", mesh},
     {"shape", "deformable", mesh},
+    {"emitter", "collimated", "\"spot\" with a small cutoff_angle"},
+    {"emitter", "sunsky", sky},
+    {"emitter", "timed_sunsky", sky},
+    {"emitter", "sky", sky},
+    {"emitter", "sun", sky},
+    {"sensor", "batch", "the sensors inside of it in its place, of which --sensor chooses one"},
     {"sensor", "radiancemeter", camera},
     {"sensor", "irradiancemeter", camera},
     {"sensor", "fluencemeter", camera},

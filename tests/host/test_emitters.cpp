@@ -121,8 +121,8 @@ TEST_CASE("wrong lights are refused with their place", "[emitters]") {
     CHECK(error("directional", R"(<vector name="direction" x="0" y="0" z="0"/>)")
               .find("has no length") != std::string::npos);
     CHECK(error("projector", "").find("no \"irradiance\"") != std::string::npos);
-    CHECK(error("collimated", "").find("without width") != std::string::npos);
-    CHECK(error("sunsky", "").find("model of the sky") != std::string::npos);
+    CHECK(error("collimated", "").find("small cutoff_angle") != std::string::npos);
+    CHECK(error("sunsky", "").find("whose tables clrender does not have") != std::string::npos);
     CHECK(error_of_text(R"(<shape type="sphere"><emitter type="spot"/></shape>)")
               .find("inside of a shape") != std::string::npos);
 }
@@ -171,7 +171,7 @@ TEST_CASE("one of several sensors is chosen", "[emitters]") {
     CHECK(fov({}) == 10);
     CHECK(fov(0) == 10);
     CHECK(fov(1) == 20);
-    CHECK(error_of([&] { fov(2); }).find("is a meter") != std::string::npos);
+    CHECK(error_of([&] { fov(2); }).find("is not supported, the nearest") != std::string::npos);
     CHECK(error_of([&] { fov(3); }).find("3 sensors, expected --sensor from 0 to 2") !=
           std::string::npos);
 }
