@@ -33,8 +33,10 @@ GROUPS = {
                        "HAS_SMOOTH_TRANSMISSION,BSDF_PARAMETERS,BSDF_TEXTURED",
     "trees of materials": "HAS_BLEND,HAS_NORMALMAP,HAS_BUMPMAP",
     "textures": "HAS_UVS,HAS_BITMAPS_U8,HAS_BITMAPS_F32,HAS_CHECKERBOARDS",
+    "attributes of meshes": "HAS_ATTRIBUTES",
     "kinds of light": "HAS_AREA_EMITTERS,HAS_POINT_LIGHTS,HAS_SPHERE_LIGHTS,HAS_PLANAR_LIGHTS,"
                       "HAS_TRIANGLE_LIGHTS",
+    "lights without a surface": "HAS_SPOT_LIGHTS,HAS_PROJECTORS,HAS_DIRECTIONAL_LIGHTS",
     "number of lights": "LIGHT_COUNT,HAS_ORIENTED_LIGHTS,SOLE_EMITTER,SOLE_LIGHT_SPHERE",
     "environment map": "ENVIRONMENT",
     "lens and clipping": "HAS_LENS,HAS_CLIP",

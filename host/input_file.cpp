@@ -36,6 +36,11 @@ InputFile::~InputFile() {
     ::close(descriptor_);
 }
 
+void InputFile::seek(std::uint64_t offset) {
+    if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0)
+        fail(std::string("cannot be read (") + std::strerror(errno) + ")");
+}
+
 std::size_t InputFile::read(char *buffer, std::size_t count) {
     std::size_t done = 0;
     while (done < count) {

@@ -22,6 +22,9 @@ public:
     /// Bytes in the file when it was opened.
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
+    /// Goes to a byte of the file. Throws InputError.
+    void seek(std::uint64_t offset);
+
     /// Reads up to `count` bytes; less only at the end of the file. Throws InputError.
     std::size_t read(char *buffer, std::size_t count);
 

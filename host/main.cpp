@@ -16,6 +16,7 @@
 #include "render/profile.h"
 #include "render/profile_trace.h"
 #include "render/render.h"
+#include "scene/film_border.h"
 #include "scene/load_scene.h"
 #include "selftest/self_test.h"
 
@@ -139,14 +140,13 @@ int render_command(const cli::Options &options) {
     Profile profile;
     const auto start = profile.origin;
     activity = "reading " + options.scene;
-    Scene scene = load_scene(options.scene, {options.defines, options.check});
+    Scene scene = load_scene(options.scene, {options.defines, options.sensor, options.check});
     apply_options(options, scene);
     check_outputs(options, scene);
     cli::RunTimes times;
     times.parse = seconds_since(start);
     profile.add_phase("parse", start, std::chrono::steady_clock::now());
-    cli::Progress progress(static_cast<double>(scene.film.crop_width) * scene.film.crop_height *
-                               scene.sample_count,
+    cli::Progress progress(static_cast<double>(sampled_pixels(scene.film)) * scene.sample_count,
                            scene.sample_count, !options.quiet && !options.check);
     const RenderOptions how = render_options(options, progress, profile);
     activity = options.check ? "checking " + options.scene : "rendering " + options.scene;
@@ -199,13 +199,12 @@ int test_command(const cli::Options &options) {
     cli::catch_interrupts();
     Profile profile;
     activity = "reading " + options.scene;
-    Scene scene = load_scene(options.scene, {options.defines});
+    Scene scene = load_scene(options.scene, {options.defines, options.sensor});
     apply_options(options, scene);
     scene.sample_count = options.spp.value_or(cli::default_test_samples);
     check_outputs(options, scene);
     const std::string name = scene.name;
-    cli::Progress progress(static_cast<double>(scene.film.crop_width) * scene.film.crop_height *
-                               scene.sample_count,
+    cli::Progress progress(static_cast<double>(sampled_pixels(scene.film)) * scene.sample_count,
                            scene.sample_count, !options.quiet);
     RenderOptions how = render_options(options, progress, profile);
     how.spp = scene.sample_count;

@@ -6,12 +6,12 @@ build_packages=(
     g++ cmake ninja-build
     ocl-icd-opencl-dev opencl-clhpp-headers
     libpugixml-dev libcli11-dev nlohmann-json3-dev libfmt-dev libtbb-dev libopenexr-dev libglm-dev
-    libtinyobjloader-dev libstb-dev libpng-dev
+    libtinyobjloader-dev libstb-dev libpng-dev zlib1g-dev
 )
 # To run it: an OpenCL runtime for the CPU.
 run_packages=(pocl-opencl-icd)
 # To test it.
-test_packages=(catch2 clang-14 clang-format-14 clang-tidy-14 oclgrind python3)
+test_packages=(catch2 clang-14 clang-format-14 clang-tidy-14 libclang-14-dev llvm-14-dev oclgrind python3)
 # To test it on Intel's runtime, which comes from PyPI.
 intel_packages=(python3-venv)
 # To give its readers made-up input (scripts/fuzz).

@@ -259,6 +259,10 @@ void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->allow_extra_args(false)
         ->check(CLI::Validator(check_layer, ""))
         ->group("Pictures");
+    app.add_option("--sensor", options.sensor, "Which of the scene's cameras, the first being 0")
+        ->type_name("N")
+        ->check(whole_number(0, max_int))
+        ->group("Pictures");
     app.add_option("-D", raw.defines, "Sets a <default> of the scene, repeatable")
         ->type_name("name=value")
         ->allow_extra_args(false)

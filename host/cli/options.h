@@ -46,7 +46,8 @@ struct Options {
     std::optional<int> max_depth; ///< -1: no limit, as in a scene file
     std::optional<int> rr_depth;
     std::optional<std::uint32_t> seed;
-    int lanes = 0; ///< 1, 4, 8 or 16; 0: as wide as the device
+    int lanes = 0;             ///< 1, 4, 8 or 16; 0: as wide as the device
+    std::optional<int> sensor; ///< of the scene's sensors, counted from 0
     std::map<std::string, std::string> defines;
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture

@@ -3,7 +3,7 @@
 namespace clrender::inline CLR_PRECISION {
 
 PackedBsdf pack_bsdf(MaterialPacker &packer, const BumpMapBsdf &bsdf, BsdfSide side) {
-    PackedBsdf packed(CLR_BSDF_BUMPMAP | flags_of(bsdf.normals, side));
+    PackedBsdf packed(CLR_BSDF_BUMPMAP | flags_of(packer, bsdf.normals, bsdf.nested, side));
     packed.parameters = {packer.colour(bsdf.height),
                          MaterialPacker::children(packer.material_of(bsdf.nested, side), 0)};
     // Heights are in units of the scene.

@@ -67,7 +67,8 @@ void pack_plastic(MaterialPacker &packer, const PlasticBsdf &bsdf, double intern
 uint burley_flags(const MaterialPacker &packer, int anisotropic);
 /// The flags that a microfacet model gives a material.
 uint flags_of(const MicrofacetModel &model);
-/// Those that the map of a side gives it.
-uint flags_of(const PerturbedNormals &normals, BsdfSide side);
+/// Those that the map of a side gives it, `nested` being what the map turns.
+uint flags_of(const MaterialPacker &packer, const PerturbedNormals &normals, int nested,
+              BsdfSide side);
 
 } // namespace clrender::inline CLR_PRECISION

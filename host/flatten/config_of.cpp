@@ -42,7 +42,7 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     const bool has_hierarchy = config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
     config.BRUTE_FORCE = has_hierarchy && sampling.brute_force && flat.groups.empty() ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
-    config.HAS_UVS = flat.textures.empty() && !flat.has_tangents() ? 0 : 1;
+    config.HAS_UVS = flat.needs_uvs() ? 1 : 0;
     config.RECORD_TABLE = flat.lane_wise_count() <= CLR_TABLE_SIZE ? 1 : 0;
 }
 
@@ -98,6 +98,9 @@ void set_materials(const FlatScene &flat, KernelConfig &config) {
         case CLR_TEXTURE_CHECKERBOARD:
             config.HAS_CHECKERBOARDS = 1;
             break;
+        case CLR_TEXTURE_ATTRIBUTE:
+            config.HAS_ATTRIBUTES = 1;
+            break;
         }
 }
 
@@ -124,6 +127,15 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
         switch (light.kind) {
         case CLR_LIGHT_POINT:
             config.HAS_POINT_LIGHTS = 1;
+            break;
+        case CLR_LIGHT_SPOT:
+            config.HAS_SPOT_LIGHTS = 1;
+            break;
+        case CLR_LIGHT_PROJECTOR:
+            config.HAS_PROJECTORS = 1;
+            break;
+        case CLR_LIGHT_DIRECTIONAL:
+            config.HAS_DIRECTIONAL_LIGHTS = 1;
             break;
         case CLR_LIGHT_SPHERE:
             config.HAS_SPHERE_LIGHTS = 1;

@@ -36,23 +36,6 @@ double windowed_sinc(double x, double lobes) {
 
 } // namespace
 
-double filter_radius(const ReconstructionFilter &filter) {
-    switch (filter.kind) {
-    case FilterKind::box:
-        return 0.5;
-    case FilterKind::tent:
-        return filter.radius;
-    case FilterKind::gaussian:
-        return 4 * filter.stddev;
-    case FilterKind::mitchell:
-    case FilterKind::catmullrom:
-        return 2;
-    case FilterKind::lanczos:
-        return filter.lobes;
-    }
-    return 0;
-}
-
 double filter_value(const ReconstructionFilter &filter, double x) {
     x = std::abs(x);
     const double radius = filter_radius(filter);

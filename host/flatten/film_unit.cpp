@@ -1,7 +1,9 @@
 #include "flatten_parts.h"
+#include "scene/mesh_attributes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -29,7 +31,7 @@ double largest(const Image &image) {
     return size;
 }
 
-double largest(const Texture &texture) {
+double largest(const Texture &texture, const Scene &scene, const Emitter &emitter) {
     switch (texture.kind) {
     case TextureKind::constant:
         return largest(texture.value);
@@ -37,18 +39,34 @@ double largest(const Texture &texture) {
         return std::max(largest(texture.color0), largest(texture.color1));
     case TextureKind::bitmap:
         return largest(*texture.bitmap);
+    case TextureKind::attribute:
+        if (emitter.shape != none)
+            if (const MeshAttribute *attribute = find_attribute(
+                    *scene.shapes[static_cast<std::size_t>(emitter.shape)].mesh, texture.attribute))
+                return texture.scale * largest_value(*attribute);
+        break;
     }
     return 0;
 }
 
 /// The largest radiance that an emitter gives a surface or the camera.
 double largest_radiance(const Scene &scene, const Emitter &emitter, double unit) {
+    const double texture =
+        emitter.radiance == none
+            ? 1
+            : largest(scene.textures[static_cast<std::size_t>(emitter.radiance)], scene, emitter);
+    const double of_place = unit * unit / (near_point * near_point);
     switch (emitter.kind) {
     case EmitterKind::point:
-        return largest(emitter.intensity) * unit * unit / (near_point * near_point);
+    case EmitterKind::spot:
+        return largest(emitter.intensity) * texture * of_place;
+    case EmitterKind::projector:
+        return std::numbers::pi * emitter.scale * texture * of_place;
+    case EmitterKind::directional:
+        return largest(emitter.intensity);
     case EmitterKind::area:
     case EmitterKind::constant:
-        return largest(scene.textures[static_cast<std::size_t>(emitter.radiance)]);
+        return texture;
     case EmitterKind::envmap:
         return largest(*emitter.bitmap) * std::abs(emitter.scale);
     }

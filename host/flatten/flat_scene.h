@@ -57,6 +57,7 @@ struct SceneFacts {
 /// Its arrays are those of scene_buffers.def, which says what each holds.
 struct FlatScene {
     FrameData frame{};
+    int border = 0; ///< pixels of the frame on each side that are sampled, but not in the picture
     Placement placement;
 #define CLR_BUFFER_ARRAY(type, name, meaning) std::vector<type> name;
     CLR_SCENE_BUFFERS(CLR_BUFFER_ARRAY)
@@ -78,6 +79,8 @@ struct FlatScene {
     }
     /// Whether some material's shading frame follows dp/du.
     [[nodiscard]] bool has_tangents() const;
+    /// Whether surfaces need coordinates: attributes of meshes do not.
+    [[nodiscard]] bool needs_uvs() const;
     /// The lane-wise sphere that is the only light, or none.
     [[nodiscard]] int sole_light_sphere() const;
     [[nodiscard]] std::size_t bytes() const;

@@ -22,6 +22,12 @@ bool FlatScene::has_tangents() const {
                        [](const Material &m) { return (m.kind & CLR_BSDF_TANGENTS) != 0; });
 }
 
+bool FlatScene::needs_uvs() const {
+    return has_tangents() || std::any_of(textures.begin(), textures.end(), [](const auto &texture) {
+               return texture.kind != CLR_TEXTURE_ATTRIBUTE;
+           });
+}
+
 FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
     Flattening work{scene, options};
     work.flat.facts.strategy = strategy_of(work);
@@ -29,10 +35,11 @@ FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
         work.boxes.push_back(shape_box(shape));
     work.instance_boxes = instance_boxes(scene);
     work.flat.placement = choose_placement(scene, work.boxes, work.instance_boxes);
+    number_attributes(work);
     flatten_materials(work);
     // Textured lights need surface coordinates too, which the shapes have to know.
     for (const Emitter &emitter : scene.emitters)
-        if (emitter.kind == EmitterKind::area) {
+        if (emitter.radiance != none && emitter.kind != EmitterKind::constant) {
             clr_real ignored[3];
             flatten_texture(work, emitter.radiance, Rgb{0.0}, ignored);
         }

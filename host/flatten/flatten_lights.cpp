@@ -1,4 +1,5 @@
-#include "light_tree.h"
+#include "light_list.h"
+#include "scene/mesh_attributes.h"
 #include "shape_parts.h"
 
 #include <algorithm>
@@ -27,47 +28,23 @@ glm::dvec3 in_single(const clr_real (&v)[3]) {
     return {in_single(v[0]), in_single(v[1]), in_single(v[2])};
 }
 
-/// Mean luminance of a texture; of a bitmap's texels, which may be off by what a mesh shows of it.
-double mean_luminance(const Texture &texture) {
-    if (texture.kind == TextureKind::constant)
-        return luminance(texture.value);
-    if (texture.kind == TextureKind::checkerboard)
-        return (luminance(texture.color0) + luminance(texture.color1)) / 2;
-    const Image &image = *texture.bitmap;
-    const std::size_t count =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+/// Mean luminance of an attribute's values, by vertex or triangle.
+double mean_luminance(const MeshAttribute &attribute) {
+    const std::size_t count = attribute.values.size() / attribute.channels;
     double sum = 0;
-    for (std::size_t i = 0; i < count; ++i)
-        sum += luminance(texel_color(image, i, texture.format));
-    return sum / static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float *value = &attribute.values[i * attribute.channels];
+        sum += attribute.channels == 1 ? value[0] : luminance({value[0], value[1], value[2]});
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-/// The lights found so far, and where each of them is and how strong.
-struct LightList {
-    std::vector<Light> lights;
-    std::vector<LightExtent> extents;
-
-    void add(const Light &light, const LightExtent &extent) {
-        lights.push_back(light);
-        extents.push_back(extent);
-    }
-
-    [[nodiscard]] uint size() const { return static_cast<uint>(lights.size()); }
-};
-
-void add_point(const Flattening &work, std::size_t index, LightList &list) {
-    const Emitter &emitter = work.scene.emitters[index];
-    const double unit = work.flat.placement.scale;
-    Light light{};
-    light.kind = CLR_LIGHT_POINT;
-    light.texture = CLR_NONE;
-    const Placement &placement = work.flat.placement;
-    const glm::dvec3 place = (emitter.position - placement.center) * placement.scale;
-    store(light.position, place);
-    store(light.radiance, emitter.intensity * unit * unit);
-    const double intensity = luminance(emitter.intensity) * unit * unit;
-    if (intensity > 0)
-        list.add(light, {place, place, {0, 0, 1}, -1, intensity});
+/// Mean luminance of a texture on a shape.
+double mean_luminance(const Texture &texture, const Shape &shape) {
+    if (texture.kind != TextureKind::attribute)
+        return mean_luminance(texture);
+    const MeshAttribute *attribute = find_attribute(*shape.mesh, texture.attribute);
+    return attribute == nullptr ? 0 : texture.scale * mean_luminance(*attribute);
 }
 
 /// The cone of the normals by which a triangle shines: its own, or those of its vertices.
@@ -130,6 +107,7 @@ void add_triangles(Flattening &work, const AreaEmitter &emitter, EmitterInfo &in
         const Vec3 e1 = corner[1] - corner[0];
         const Vec3 e2 = corner[2] - corner[0];
         LightTriangle triangle{};
+        triangle.triangle = static_cast<uint>(t);
         store(triangle.v0, glm::dvec3(corner[0]));
         store(triangle.e1, glm::dvec3(e1));
         store(triangle.e2, glm::dvec3(e2));
@@ -213,7 +191,8 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
     AreaEmitter emitter;
     emitter.shape = source.shape;
     emitter.radiance =
-        mean_luminance(work.scene.textures[static_cast<std::size_t>(source.radiance)]);
+        mean_luminance(work.scene.textures[static_cast<std::size_t>(source.radiance)],
+                       work.scene.shapes[static_cast<std::size_t>(source.shape)]);
     info.texture = emitter.base.texture =
         flatten_texture(work, source.radiance, Rgb{0.0}, info.radiance);
     std::copy_n(info.radiance, 3, emitter.base.radiance);
@@ -236,7 +215,7 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
 double environment_share(const std::vector<LightExtent> &extents, double power) {
     double others = 0;
     for (const LightExtent &extent : extents)
-        others += pi * extent.intensity;
+        others += extent.is_distant ? extent.intensity : pi * extent.intensity;
     return extents.empty()
                ? 1
                : std::clamp(pi * power / (pi * power + others), least_share, 1 - least_share);
@@ -265,7 +244,8 @@ void set_sole_light(const LightExtent &extent, FlatScene &flat) {
     if (sole.kind == CLR_LIGHT_TRIANGLE)
         for (EmitterInfo &info : flat.emitters)
             info.density = info.density > 0 ? 1 / sole.area : 0.0f;
-    if (flat.facts.environment == CLR_ENVIRONMENT_MAP || flat.has_bvh_spheres())
+    if (flat.facts.environment == CLR_ENVIRONMENT_MAP || flat.has_bvh_spheres() ||
+        extent.is_distant)
         return;
     double distance = INFINITY;
     for (int i = 0; i < flat.facts.large_count; ++i)
@@ -308,22 +288,46 @@ double luminance(const Rgb &c) {
     return glm::dot(c, Rgb{0.212671, 0.715160, 0.072169});
 }
 
+double mean_luminance(const Texture &texture) {
+    if (texture.kind == TextureKind::constant)
+        return luminance(texture.value);
+    if (texture.kind == TextureKind::checkerboard)
+        return (luminance(texture.color0) + luminance(texture.color1)) / 2;
+    const Image &image = *texture.bitmap;
+    const std::size_t count =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        sum += luminance(texel_color(image, i, texture.format));
+    return sum / static_cast<double>(count);
+}
+
 void flatten_lights(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.emitters.resize(work.scene.emitters.size());
     LightList list;
     double map_power = 0;
     for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {
-        switch (work.scene.emitters[i].kind) {
+        const Emitter &emitter = work.scene.emitters[i];
+        switch (emitter.kind) {
         case EmitterKind::point:
-            add_point(work, i, list);
+            add_point(work, emitter, list);
+            break;
+        case EmitterKind::spot:
+            add_spot(work, emitter, list);
+            break;
+        case EmitterKind::projector:
+            add_projector(work, emitter, list);
+            break;
+        case EmitterKind::directional:
+            add_directional(emitter, list);
             break;
         case EmitterKind::area:
             add_area(work, i, list);
             break;
         case EmitterKind::constant:
         case EmitterKind::envmap:
-            flatten_environment(work, work.scene.emitters[i], &map_power);
+            flatten_environment(work, emitter, &map_power);
             break;
         }
     }

@@ -26,12 +26,9 @@ Mesh rectangle_mesh(bool mirrored) {
 struct VertexData {
     bool normals = false;
     bool uvs = false;
-};
+    bool attributes = false;
 
-/// A vertex that splitting a mesh's triangle adds, behind the mesh's own.
-struct AddedVertex {
-    std::array<std::uint32_t, 3> parent; ///< corners of the mesh's triangle
-    glm::dvec3 weights;
+    [[nodiscard]] bool any() const { return normals || uvs || attributes; }
 };
 
 glm::dvec3 corner_uv(const Mesh &mesh, std::uint32_t vertex, int corner) {
@@ -99,7 +96,8 @@ void append_vertex_data(const Shape &shape, const Mesh &mesh, const std::vector<
 void append_mesh(const Shape &shape, const Mesh &mesh, const Placement &placement,
                  VertexData wanted, Flattening &work) {
     FlatScene &flat = work.flat;
-    const uint shape_number = append_shape(shape, work);
+    PlacedMesh placed;
+    placed.shape = append_shape(shape, work);
     const auto exact = [&](std::uint32_t vertex) {
         return placement.exact(glm::dvec3(shape.to_world * glm::dvec4(mesh.positions[vertex], 1)));
     };
@@ -110,33 +108,39 @@ void append_mesh(const Shape &shape, const Mesh &mesh, const Placement &placemen
     // A flipped mesh has its triangles wound the other way round.
     const std::size_t second = shape.flip_normals ? 2 : 1;
     const std::size_t third = shape.flip_normals ? 1 : 2;
-    const auto first_vertex = static_cast<uint>(work.vertex_count);
-    const auto first_added = first_vertex + static_cast<uint>(positions.size());
-    const bool by_vertex = wanted.normals || wanted.uvs;
-    std::vector<AddedVertex> added;
-    for (const auto &t : mesh.triangles) {
+    placed.first_vertex = static_cast<uint>(work.vertex_count);
+    placed.first_triangle = static_cast<uint>(flat.corners.size());
+    const auto first_added = placed.first_vertex + static_cast<uint>(positions.size());
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const std::array<std::uint32_t, 3> &t = mesh.triangles[i];
         const std::array<std::uint32_t, 3> turned = {t[0], t[second], t[third]};
         const TriangleCorners corners = {positions[turned[0]], positions[turned[1]],
                                          positions[turned[2]]};
         if (wants_split(corners)) {
             append_split(turned, {exact(turned[0]), exact(turned[1]), exact(turned[2])},
-                         first_added, by_vertex, added, flat);
+                         first_added, wanted.any(), placed.added, flat);
         } else {
             flat.corners.push_back(corners);
             for (const std::uint32_t vertex : turned)
-                if (by_vertex)
-                    flat.triangles.push_back(first_vertex + vertex);
+                if (wanted.any())
+                    flat.triangles.push_back(placed.first_vertex + vertex);
         }
+        if (!shape.attribute_textures.empty())
+            placed.sources.resize(flat.corners.size() - placed.first_triangle, i);
     }
-    flat.shape_of.resize(flat.corners.size(), shape_number);
-    append_vertex_data(shape, mesh, added, wanted, flat);
-    work.vertex_count += positions.size() + added.size();
+    flat.shape_of.resize(flat.corners.size(), placed.shape);
+    append_vertex_data(shape, mesh, placed.added, wanted, flat);
+    append_attributes(shape, placed, work);
+    work.vertex_count += positions.size() + placed.added.size();
 }
 
 } // namespace
 
 void append_triangles(const Shape &shape, const Placement &placement, Flattening &work) {
-    const VertexData wanted{work.vertex_normals, work.needs_uvs()};
+    VertexData wanted;
+    wanted.normals = work.vertex_normals;
+    wanted.uvs = work.needs_uvs();
+    wanted.attributes = !work.attribute_index.empty();
     const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
     if (shape.mesh)
         append_mesh(shape, *shape.mesh, placement, wanted, work);

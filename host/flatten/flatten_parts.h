@@ -5,6 +5,7 @@
 #include "scene/shape_bounds.h"
 
 #include <map>
+#include <string>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -18,12 +19,13 @@ struct Flattening {
     const Scene &scene;
     const SamplingOptions &options;
     FlatScene flat{};
-    std::vector<Box> boxes{};                 ///< by Scene::shapes, in world coordinates
-    std::vector<Box> instance_boxes{};        ///< by Scene::instances, likewise
-    std::map<int, uint> texture_index{};      ///< by Scene::textures
-    std::map<int, uint> sides_of_bsdf{};      ///< by Scene::bsdfs, as ShapeInfo::materials
-    std::map<int, uint> primitive_of_shape{}; ///< by Scene::shapes, spheres and planars
-    std::vector<int> lane_wise_shapes{};      ///< Scene::shapes by lane-wise primitive, or none
+    std::vector<Box> boxes{};                      ///< by Scene::shapes, in world coordinates
+    std::vector<Box> instance_boxes{};             ///< by Scene::instances, likewise
+    std::map<int, uint> texture_index{};           ///< by Scene::textures
+    std::map<std::string, uint> attribute_index{}; ///< by name, of those that shapes show
+    std::map<int, uint> sides_of_bsdf{};           ///< by Scene::bsdfs, as ShapeInfo::materials
+    std::map<int, uint> primitive_of_shape{};      ///< by Scene::shapes, spheres and planars
+    std::vector<int> lane_wise_shapes{}; ///< Scene::shapes by lane-wise primitive, or none
     std::map<int, TriangleRange> triangles_of_shape{}; ///< by Scene::shapes, meshes
     std::size_t vertex_count = 0;
     bool vertex_normals = false;    ///< some mesh has them, so all have the arrays
@@ -35,9 +37,7 @@ struct Flattening {
         return is_forced(options.forced_features, name);
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
-    [[nodiscard]] bool needs_uvs() const {
-        return !flat.textures.empty() || flat.has_tangents() || wants("HAS_UVS");
-    }
+    [[nodiscard]] bool needs_uvs() const { return flat.needs_uvs() || wants("HAS_UVS"); }
 };
 
 /// Where the scene is put: the origin is the median of the places of its shapes, weighted by the
@@ -46,6 +46,9 @@ struct Flattening {
 /// `boxes` are those of the scene's shapes, `instance_boxes` those of its instances.
 Placement choose_placement(const Scene &scene, const std::vector<Box> &boxes,
                            const std::vector<Box> &instance_boxes);
+
+/// Fills attribute_index.
+void number_attributes(Flattening &work);
 
 /// Materials and textures of the BSDFs that shapes use; fills sides_of_bsdf.
 void flatten_materials(Flattening &work);
@@ -81,6 +84,9 @@ Strategy strategy_of(const Flattening &work);
 
 /// Camera, film and the bounds of the bounce loop.
 void flatten_camera(Flattening &work);
+
+/// Half the extent of the image plane at distance 1, along x and y; `aspect` is width over height.
+glm::dvec2 image_plane_half_size(double fov, FovAxis axis, double aspect);
 
 /// The film's unit of colour (FrameData::film_exponent): the power of two above the largest
 /// radiance that a light of the scene gives, so that a film that is brighter by a power of two has

@@ -29,10 +29,16 @@ bool is_opaque(const Scene &scene, const Shape &shape) {
     if (lets_light_through(scene, shape.bsdf) ||
         (shape.emitter != none && scene.integrator.hide_emitters))
         return false;
-    const double distance =
-        glm::length(glm::dvec3(shape.to_world[3]) - glm::dvec3(scene.sensor.to_world[3]));
+    const Sensor &sensor = scene.sensor;
+    const glm::dvec3 way = glm::dvec3(shape.to_world[3]) - glm::dvec3(sensor.to_world[3]);
+    double distance = glm::length(way);
+    if (sensor.kind == SensorKind::orthographic) { // that from the film's plane
+        const glm::dvec3 normal =
+            glm::cross(glm::dvec3(sensor.to_world[0]), glm::dvec3(sensor.to_world[1]));
+        distance = std::abs(glm::dot(way, glm::normalize(normal)));
+    }
     constexpr double margin = 1.0001;
-    return distance > sphere_radius(shape) * margin + scene.sensor.aperture_radius;
+    return distance > sphere_radius(shape) * margin + sensor.aperture_radius;
 }
 
 /// Spheres from this radius on, in the renderer's units, are as large as the scene.

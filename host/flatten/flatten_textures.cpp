@@ -46,7 +46,7 @@ uint offset_of_image(const Texture &texture, Flattening &work) {
     return append_texels(*texture.bitmap, texture.format, work.flat);
 }
 
-TextureInfo describe(const Texture &source, uint offset) {
+TextureInfo describe(const Texture &source, uint offset, const Flattening &work) {
     TextureInfo t{};
     for (int row = 0; row < 2; ++row)
         for (int column = 0; column < 3; ++column)
@@ -55,6 +55,14 @@ TextureInfo describe(const Texture &source, uint offset) {
         t.kind = CLR_TEXTURE_CHECKERBOARD;
         store(t.color0, source.color0);
         store(t.color1, source.color1);
+        return t;
+    }
+    if (source.kind == TextureKind::attribute) {
+        t.kind = CLR_TEXTURE_ATTRIBUTE;
+        t.offset = work.attribute_index.at(source.attribute);
+        t.width = static_cast<uint>(work.attribute_index.size());
+        t.nearest = is_face_attribute(source.attribute) ? 1 : 0;
+        t.color0[0] = static_cast<clr_real>(source.scale);
         return t;
     }
     const Image &image = *source.bitmap;
@@ -109,7 +117,7 @@ uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *consta
     if (flat.decode.empty())
         flat.decode = decode_tables();
     const auto index = static_cast<uint>(flat.textures.size());
-    flat.textures.push_back(describe(*source, offset));
+    flat.textures.push_back(describe(*source, offset, work));
     work.texture_index[texture] = index;
     return index;
 }

@@ -57,22 +57,27 @@ struct Bounds {
     glm::dvec3 lower{INFINITY}, upper{-INFINITY};
     Cone cone;
     double intensity = 0;
+    bool is_beam = true; ///< all are
 
     void add(const Bounds &other) {
         lower = glm::min(lower, other.lower);
         upper = glm::max(upper, other.upper);
         cone.add(other.cone);
         intensity += other.intensity;
+        is_beam &= other.is_beam;
     }
 };
 
 Bounds bounds_of(const LightExtent &light) {
     const double angle = std::acos(std::clamp(light.cosine, -1.0, 1.0));
-    return {light.lower, light.upper, {light.axis, angle}, light.intensity};
+    return {light.lower, light.upper, {light.axis, angle}, light.intensity, light.is_beam};
 }
 
-/// The orientation measure of a cone whose lights emit into a half space around each normal.
-double cone_measure(double angle) {
+/// The orientation measure of a cone whose lights emit into a half space around each normal, or
+/// nowhere beyond the cone.
+double cone_measure(double angle, bool is_beam) {
+    if (is_beam)
+        return 2 * pi * (1 - std::cos(angle));
     const double reach = std::min(angle + pi / 2, pi);
     return 2 * pi * (1 - std::cos(angle)) +
            pi / 2 *
@@ -87,7 +92,7 @@ double cost_of(const Bounds &b) {
     // Flat and thin boxes keep a grain of area, so that their power still counts.
     const double longest = std::max({d.x, d.y, d.z});
     const double area = d.x * d.y + d.y * d.z + d.z * d.x + 1e-3 * longest * longest + 1e-12;
-    return b.intensity * cone_measure(b.cone.angle) * area;
+    return b.intensity * cone_measure(b.cone.angle, b.is_beam) * area;
 }
 
 class Builder {
@@ -186,6 +191,13 @@ std::optional<Builder::Split> Builder::cheapest_split(std::size_t first, std::si
 std::size_t Builder::split(std::size_t first, std::size_t end, int level) {
     const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto stop = order_.begin() + static_cast<std::ptrdiff_t>(end);
+
+    // What is infinitely far away has a tree of its own below the root.
+    const auto distant =
+        std::partition(begin, stop, [&](uint light) { return !lights_[light].is_distant; });
+    if (distant != begin && distant != stop)
+        return static_cast<std::size_t>(distant - order_.begin());
+
     const auto best = cheapest_split(first, end);
 
     // Halves, once no more levels are left than halving needs.
@@ -211,6 +223,7 @@ LightBounds flat_bounds(const Bounds &b, uint child, clr_real (&axis)[4]) {
         flat.center[c] = static_cast<clr_real>(center[c]);
         axis[c] = static_cast<clr_real>(b.cone.axis[c]);
     }
+    axis[3] = b.is_beam ? 0.0f : 1.0f;
     // A little wider, for the rounding of the centre.
     const double grown = radius * (1 + 1e-5) + 1e-6 * glm::length(center);
     flat.radius2 = static_cast<clr_real>(grown * grown);
@@ -236,6 +249,8 @@ uint Builder::build(std::size_t first, std::size_t end, int level, uint trail) {
         LightNode &node = tree_.nodes[index];
         node.bounds[side] =
             flat_bounds(bounds(start[side], start[side + 1]), child, node.axis[side]);
+        if (lights_[order_[start[side]]].is_distant)
+            node.bounds[side].child |= CLR_LIGHT_DISTANT;
     }
     return index;
 }

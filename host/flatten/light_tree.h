@@ -11,10 +11,14 @@ namespace clrender::inline CLR_PRECISION {
 
 /// What the tree has to know of a light, in the renderer's coordinates.
 struct LightExtent {
-    glm::dvec3 lower{0.0}, upper{0.0}; ///< box around all points that emit
+    glm::dvec3 lower{0.0}, upper{0.0}; ///< box around all points that emit; of a distant light the
+                                       ///< unit vector towards it
     glm::dvec3 axis{0.0, 0.0, 1.0};    ///< of the cone that holds the normals
     double cosine = -1;                ///< of the cone's half angle; -1: shines all around
-    double intensity = 0;              ///< largest radiant intensity in any direction, luminance
+    double intensity = 0; ///< largest radiant intensity in any direction, luminance; of a distant
+                          ///< light its irradiance
+    bool is_beam = false; ///< shines within the cone alone
+    bool is_distant = false; ///< infinitely far away
 };
 
 /// `trail[i]` leads to light i: bit k is the child taken at level k.

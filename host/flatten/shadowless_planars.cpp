@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -27,6 +28,9 @@ int sole_light(const Scene &scene) {
         case EmitterKind::constant:
             break;
         case EmitterKind::point:
+        case EmitterKind::spot:
+        case EmitterKind::projector:
+        case EmitterKind::directional:
         case EmitterKind::envmap:
             return none;
         case EmitterKind::area:
@@ -37,6 +41,28 @@ int sole_light(const Scene &scene) {
         }
     }
     return sole;
+}
+
+/// Whether the emitter's samples may come from beyond all shapes.
+bool is_outside(const Emitter &emitter) {
+    return emitter.kind == EmitterKind::envmap || emitter.kind == EmitterKind::directional;
+}
+
+/// The place of a light that has one and no shape.
+std::optional<glm::dvec3> place_of(const Emitter &emitter) {
+    switch (emitter.kind) {
+    case EmitterKind::point:
+        return emitter.position;
+    case EmitterKind::spot:
+    case EmitterKind::projector:
+        return glm::dvec3(emitter.to_world[3]);
+    case EmitterKind::area:
+    case EmitterKind::constant:
+    case EmitterKind::envmap:
+    case EmitterKind::directional:
+        break;
+    }
+    return std::nullopt;
 }
 
 } // namespace
@@ -71,10 +97,8 @@ private:
 
 ShadowlessPlanars::ShadowlessPlanars(const Scene &scene, double touching)
     : scene_(scene), touching_(touching), sole_light_(sole_light(scene)) {
-    has_map_ =
-        std::any_of(scene.emitters.begin(), scene.emitters.end(),
-                    [](const Emitter &emitter) { return emitter.kind == EmitterKind::envmap; });
-    if (has_map_)
+    lit_from_outside_ = std::any_of(scene.emitters.begin(), scene.emitters.end(), is_outside);
+    if (lit_from_outside_)
         return; // nobody asks for the boxes
     instance_boxes_ = instance_boxes(scene);
     for (const Shape &shape : scene.shapes) {
@@ -106,8 +130,8 @@ void ShadowlessPlanars::add_mesh(const Shape &shape, Sides &sides) const {
 bool ShadowlessPlanars::is_outer(const Shape &planar) const {
     Sides sides(planar, touching_);
     for (const Emitter &emitter : scene_.emitters)
-        if (emitter.kind == EmitterKind::point)
-            sides.add(emitter.position);
+        if (const auto place = place_of(emitter))
+            sides.add(*place);
     for (const Shape &shape : scene_.shapes) {
         switch (shape.kind) {
         case ShapeKind::sphere:
@@ -138,7 +162,8 @@ bool ShadowlessPlanars::is_outer(const Shape &planar) const {
 
 bool ShadowlessPlanars::contains(std::size_t shape) const {
     const Shape &planar = scene_.shapes.at(shape);
-    if (has_map_ || (planar.kind != ShapeKind::rectangle && planar.kind != ShapeKind::disk))
+    if (lit_from_outside_ ||
+        (planar.kind != ShapeKind::rectangle && planar.kind != ShapeKind::disk))
         return false;
     return static_cast<int>(shape) == sole_light_ || is_outer(planar);
 }

@@ -28,7 +28,7 @@ private:
 
     const Scene &scene_;
     double touching_;
-    bool has_map_ = false;
+    bool lit_from_outside_ = false;
     int sole_light_ = none;
     std::map<const Mesh *, Box> boxes_; ///< in their own space
     std::vector<Box> instance_boxes_;

@@ -44,6 +44,7 @@ uint append_shape(const Shape &shape, Flattening &work) {
     FlatScene &flat = work.flat;
     flat.shapes.push_back({work.sides_of_bsdf.at(shape.bsdf),
                            shape.emitter == none ? CLR_NONE : static_cast<uint>(shape.emitter)});
+    flat.attribute_places.resize(flat.shapes.size() * work.attribute_index.size());
     if (work.needs_uvs()) {
         glm::dmat3 to_local{1.0};
         if (shape.kind == ShapeKind::sphere)
@@ -65,6 +66,7 @@ void append_lane_wise_shape(std::size_t shape, Flattening &work) {
 void append_no_shape(Flattening &work) {
     FlatScene &flat = work.flat;
     flat.shapes.push_back({CLR_NO_MATERIAL | CLR_NO_MATERIAL << 16, CLR_NONE});
+    flat.attribute_places.resize(flat.shapes.size() * work.attribute_index.size());
     if (work.needs_uvs())
         flat.shape_frames.emplace_back();
     work.lane_wise_shapes.push_back(none);

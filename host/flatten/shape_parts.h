@@ -3,6 +3,10 @@
 
 #include "flatten_parts.h"
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 namespace clrender::inline CLR_PRECISION {
 
 /// What rays are tested against.
@@ -22,6 +26,23 @@ void flatten_planars(Flattening &work);
 void flatten_meshes(Flattening &work);
 /// The triangles of a mesh or a rectangle, in the coordinates of `placement`.
 void append_triangles(const Shape &shape, const Placement &placement, Flattening &work);
+
+/// A vertex that splitting a mesh's triangle adds, behind the mesh's own.
+struct AddedVertex {
+    std::array<std::uint32_t, 3> parent; ///< corners of the mesh's triangle
+    glm::dvec3 weights;
+};
+
+/// What became of a mesh in the flat scene.
+struct PlacedMesh {
+    uint shape = 0;                     ///< its entry among the shape infos
+    uint first_vertex = 0;              ///< number of its first vertex among the scene's
+    uint first_triangle = 0;            ///< likewise
+    std::vector<AddedVertex> added;     ///< the vertices behind its own
+    std::vector<std::uint32_t> sources; ///< by triangle of the flat scene: that of the mesh
+};
+/// Appends the attributes of a mesh that its shape shows.
+void append_attributes(const Shape &shape, const PlacedMesh &placed, Flattening &work);
 
 /// The shape's entry among the shape infos, with the frame that spheres need for their (u, v).
 uint append_shape(const Shape &shape, Flattening &work);

@@ -327,8 +327,10 @@ void PathTracer::add_counters(RenderStats &stats) const {
     for (const ItemCounters &c : film_->read_counters()) {
         stats.rays += c.rays_low + 4294967296.0 * c.rays_high;
         if (c.nonfinite > 0 && stats.nonfinite_samples == 0) {
-            stats.nonfinite_x = static_cast<int>(c.first_nonfinite % flat_.frame.width);
-            stats.nonfinite_y = static_cast<int>(c.first_nonfinite / flat_.frame.width);
+            stats.nonfinite_x =
+                static_cast<int>(c.first_nonfinite % flat_.frame.width) - flat_.border;
+            stats.nonfinite_y =
+                static_cast<int>(c.first_nonfinite / flat_.frame.width) - flat_.border;
         }
         stats.nonfinite_samples += c.nonfinite;
     }

@@ -1,6 +1,7 @@
 #include "render_at_precision.h"
 
 #include "film/film_blocks.h"
+#include "film/trim.h"
 #include "flatten/config_of.h"
 #include "flatten/flat_scene.h"
 #include "log.h"
@@ -169,8 +170,8 @@ void Rendering::set_frame() {
     frame.control_group = static_cast<uint>(control_group_of(flat_, config_));
     stats_.device = entry_.name;
     stats_.lanes = config_.LANES;
-    stats_.width = static_cast<int>(frame.width);
-    stats_.height = static_cast<int>(frame.height);
+    stats_.width = static_cast<int>(frame.width) - 2 * flat_.border;
+    stats_.height = static_cast<int>(frame.height) - 2 * flat_.border;
     stats_.spp = spp_;
     stats_.triangles = flat_.triangle_count;
 }
@@ -204,8 +205,8 @@ RenderResult Rendering::result_of(Picture &&picture) {
     if (stopped_)
         result.gaps = picture.fill_gaps();
     stats_.clamped_pixels = picture.clamped.count;
-    stats_.clamped_x = static_cast<int>(picture.clamped.first % flat_.frame.width);
-    stats_.clamped_y = static_cast<int>(picture.clamped.first / flat_.frame.width);
+    stats_.clamped_x = static_cast<int>(picture.clamped.first % flat_.frame.width) - flat_.border;
+    stats_.clamped_y = static_cast<int>(picture.clamped.first / flat_.frame.width) - flat_.border;
     result.stats = stats_;
     result.image = std::move(picture.image);
     result.samples = std::move(picture.samples);
@@ -217,8 +218,11 @@ RenderResult Rendering::result_of(Picture &&picture) {
             result.image, result.variance);
         for (float &value : result.variance.f32)
             value *= static_cast<float>(result.error.factor.value);
-        result.error.relative_variance = mean_relative_variance(result.image, result.variance);
     }
+    for (Image *image : {&result.image, &result.samples, &result.variance})
+        trim(*image, flat_.border);
+    if (options_.with_variance)
+        result.error.relative_variance = mean_relative_variance(result.image, result.variance);
     return result;
 }
 

@@ -26,6 +26,9 @@ Scene read_scene(const std::string &path, const LoadOptions &options) {
     for (const auto &[name, value] : options.defines)
         log::warn(std::string("-D ").append(name).append(": nothing in ").append(path) +
                   " uses it");
+    if (options.sensor.value_or(0) != 0)
+        throw InputError({path, 0},
+                         "the model has a camera of its own alone, expected no --sensor");
     return load_model(path);
 }
 

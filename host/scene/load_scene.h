@@ -4,6 +4,7 @@
 #include "scene.h"
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace clrender {
@@ -11,6 +12,7 @@ namespace clrender {
 /// What the command line may change while a scene is read.
 struct LoadOptions {
     std::map<std::string, std::string> defines; ///< -D name=value
+    std::optional<int> sensor{}; ///< of several, counted from 0; unless stated the first one
     bool all_faults = false; ///< goes on behind the first fault of a scene, and throws all in one
 };
 

@@ -4,6 +4,7 @@
 #include "scene.h"
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace clrender {
 struct MeshReadOptions {
     bool face_normals = false;    ///< drop vertex normals: flat shading
     bool flip_tex_coords = false; ///< v -> 1 - v (the readers' callers know Mitsuba's defaults)
+    int shape_index = 0;          ///< of a .serialized file: which of its meshes
+    /// Names of attributes to read; if there are none, the mesh does not list what it has.
+    std::set<std::string> attributes{};
 };
 
 /// One group of an OBJ file: its triangles and the MTL material they name ("" if none).
@@ -66,5 +70,9 @@ ObjFile read_obj_file(const std::string &path);
 /// ASCII and binary (both byte orders) PLY. Throws InputError.
 Mesh read_ply_mesh(const std::string &path, const MeshReadOptions &options,
                    const SourceLocation &referrer = {});
+
+/// One of the meshes of a .serialized file, as Mitsuba's `serialized` reads it. Throws InputError.
+Mesh read_serialized_mesh(const std::string &path, const MeshReadOptions &options,
+                          const SourceLocation &referrer = {});
 
 } // namespace clrender

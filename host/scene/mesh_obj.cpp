@@ -27,6 +27,10 @@ namespace clrender {
 
 namespace {
 
+const std::string vertex_colors = "vertex_color";
+/// Of vertices without a colour, where others have one.
+constexpr glm::vec3 no_color(1);
+
 /// One vertex of the mesh: indices from 0 into the file's v, vt and vn lists; none = absent.
 struct Corner {
     int position = none, uv = none, normal = none;
@@ -50,9 +54,12 @@ struct CornerHash {
 /// Collects what the parser finds; vertices get numbered in the order of their first use.
 class ObjBuilder {
 public:
-    ObjBuilder(const std::string &path, const SourceLocation &referrer, bool flip_tex_coords)
+    ObjBuilder(const std::string &path, const SourceLocation &referrer,
+               const MeshReadOptions &options)
         : lines_(path, referrer, [this](std::string &line) { return filter(line); }),
-          folder_(std::filesystem::path(path).parent_path()), flip_(flip_tex_coords) {}
+          folder_(std::filesystem::path(path).parent_path()), flip_(options.flip_tex_coords),
+          lists_attributes_(!options.attributes.empty()),
+          wants_colors_(options.attributes.count(vertex_colors) != 0) {}
 
     /// Reads the file to its end. Throws InputError.
     void read();
@@ -66,14 +73,18 @@ public:
 
 private:
     std::string filter(std::string &line);
+    void note_color(const std::string &line);
+    void add_colors();
     void add_face(const tinyobj::index_t *corners, int count);
     std::uint32_t vertex(const tinyobj::index_t &index);
     int resolve(int index, std::size_t count, const char *what) const;
 
     ObjLines lines_;
     std::filesystem::path folder_;
-    bool flip_;
+    bool flip_, lists_attributes_, wants_colors_;
     std::vector<glm::dvec3> positions_;
+    std::vector<glm::vec3> colors_;          ///< of the first so many positions
+    std::vector<std::uint32_t> position_of_; ///< by vertex; only where colours are wanted
     std::vector<glm::vec3> normals_;
     std::vector<glm::vec2> uvs_;
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
@@ -118,6 +129,7 @@ void ObjBuilder::read() {
         mesh.uvs.clear();
     if (normals_.empty())
         mesh.normals.clear();
+    add_colors();
 }
 
 std::string ObjBuilder::filter(std::string &line) {
@@ -126,10 +138,15 @@ std::string ObjBuilder::filter(std::string &line) {
     const std::size_t begin = text.find_first_not_of(" \t");
     const std::string_view keyword = text.substr(begin, text.find_first_of(" \t", begin) - begin);
     const bool is_use = keyword == "usemtl";
+    const bool keyword_is_vertex = keyword == "v";
     if (keyword == "surf" && !std::exchange(has_surfaces_, true))
         log::warn(lines_.where(), "curved surfaces (surf) are left out, expected polygons");
-    if (!is_use && keyword != "mtllib")
-        return check_obj_line(line);
+    if (!is_use && keyword != "mtllib") {
+        std::string reason = check_obj_line(line);
+        if (reason.empty() && lists_attributes_ && keyword_is_vertex)
+            note_color(line);
+        return reason;
+    }
 
     const std::string name = joined_words(text.substr(begin + keyword.size()));
     if (!is_use) {
@@ -143,6 +160,30 @@ std::string ObjBuilder::filter(std::string &line) {
     }
     line.clear();
     return {};
+}
+
+/// The colour of a vertex stands behind its place: v x y z r g b.
+void ObjBuilder::note_color(const std::string &line) {
+    const std::vector<std::string_view> words = split_words(line);
+    if (words.size() < 7)
+        return;
+    glm::vec3 color;
+    for (std::size_t c = 0; c < 3; ++c)
+        color[static_cast<int>(c)] = std::strtof(std::string(words[4 + c]).c_str(), nullptr);
+    colors_.resize(positions_.size(), no_color);
+    colors_.push_back(color);
+}
+
+void ObjBuilder::add_colors() {
+    if (colors_.empty())
+        return;
+    colors_.resize(positions_.size(), no_color);
+    MeshAttribute attribute;
+    attribute.name = vertex_colors;
+    for (const std::uint32_t position : position_of_)
+        for (int c = 0; c < 3; ++c)
+            attribute.values.push_back(colors_[position][c]);
+    mesh.attributes.push_back(std::move(attribute));
 }
 
 void ObjBuilder::add_face(const tinyobj::index_t *corners, int count) {
@@ -162,6 +203,8 @@ std::uint32_t ObjBuilder::vertex(const tinyobj::index_t &index) {
     if (is_new) {
         const auto at = [](const auto &list, int i) { return list[static_cast<std::size_t>(i)]; };
         mesh.positions.push_back(at(positions_, corner.position));
+        if (wants_colors_)
+            position_of_.push_back(static_cast<std::uint32_t>(corner.position));
         mesh.uvs.push_back(corner.uv == none ? glm::vec2(0.0F) : at(uvs_, corner.uv));
         mesh.normals.push_back(corner.normal == none ? glm::vec3(0.0F)
                                                      : at(normals_, corner.normal));
@@ -205,6 +248,10 @@ void warn_of_unknown(const std::vector<std::pair<std::string, SourceLocation>> &
 Mesh extract(const Mesh &mesh, const std::vector<std::uint32_t> &selected,
              std::vector<std::pair<int, std::uint32_t>> &new_index, int stamp) {
     Mesh part;
+    for (const MeshAttribute &attribute : mesh.attributes) {
+        part.attributes.push_back(attribute);
+        part.attributes.back().values.clear();
+    }
     part.triangles.reserve(selected.size());
     for (const std::uint32_t t : selected) {
         std::array<std::uint32_t, 3> triangle = mesh.triangles[t];
@@ -218,6 +265,9 @@ Mesh extract(const Mesh &mesh, const std::vector<std::uint32_t> &selected,
                     part.normals.push_back(mesh.normals[v]);
                 if (!mesh.uvs.empty())
                     part.uvs.push_back(mesh.uvs[v]);
+                for (std::size_t a = 0; a < mesh.attributes.size(); ++a)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        part.attributes[a].values.push_back(mesh.attributes[a].values[3 * v + c]);
             }
             v = id;
         }
@@ -230,7 +280,7 @@ Mesh extract(const Mesh &mesh, const std::vector<std::uint32_t> &selected,
 
 Mesh read_obj_mesh(const std::string &path, const MeshReadOptions &options,
                    const SourceLocation &referrer) {
-    ObjBuilder builder(path, referrer, options.flip_tex_coords);
+    ObjBuilder builder(path, referrer, options);
     builder.read();
     if (options.face_normals)
         builder.mesh.normals.clear();
@@ -240,7 +290,7 @@ Mesh read_obj_mesh(const std::string &path, const MeshReadOptions &options,
 }
 
 ObjFile read_obj_file(const std::string &path) {
-    ObjBuilder builder(path, {}, true);
+    ObjBuilder builder(path, {}, {.flip_tex_coords = true, .attributes = {vertex_colors}});
     builder.read();
     complete_normals(builder.mesh);
 

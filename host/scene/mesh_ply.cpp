@@ -1,9 +1,10 @@
 /// PLY files: ASCII and both binary byte orders, any scalar types; what is not a vertex's place,
-/// normal or coordinates or a face's indices is passed over.
+/// normal or coordinates, a face's indices or an attribute that is asked for is passed over.
 
 #include "../input_file.h"
 #include "../log.h"
 #include "../memory_limit.h"
+#include "mesh_attributes.h"
 #include "mesh_io.h"
 #include "mesh_normals.h"
 #include "mesh_polygons.h"
@@ -170,8 +171,18 @@ void skip(const PlyProperty &property, PlyValues &values) {
         (void)values.number(property.type);
 }
 
+/// Reads a property of an element that belongs to an attribute.
+void read_attribute(const PlyElement &element, std::size_t property, std::uint64_t number,
+                    PlyValues &values, PlyAttributes &attributes) {
+    const double value = values.number(element.properties[property].type);
+    if (!(std::abs(value) <= std::numeric_limits<float>::max()))
+        values.fail(fmt::format("{} of {} {} is {}, expected a finite number",
+                                element.properties[property].name, element.name, number, value));
+    attributes.set(property, value);
+}
+
 void read_vertices(const PlyElement &element, const std::string &path, PlyValues &values,
-                   Mesh &mesh) {
+                   PlyAttributes &attributes, Mesh &mesh) {
     const std::vector<std::size_t> slots = vertex_slots(element);
     const auto has = [&](std::initializer_list<std::size_t> wanted) {
         return std::all_of(wanted.begin(), wanted.end(), [&](std::size_t slot) {
@@ -190,6 +201,10 @@ void read_vertices(const PlyElement &element, const std::string &path, PlyValues
     for (std::uint64_t i = 0; i < element.count; ++i) {
         std::array<double, slot_count + 1> at{};
         for (std::size_t p = 0; p < slots.size(); ++p) {
+            if (attributes.wants(p)) {
+                read_attribute(element, p, i, values, attributes);
+                continue;
+            }
             if (slots[p] == slot_count) {
                 skip(element.properties[p], values);
                 continue;
@@ -200,6 +215,7 @@ void read_vertices(const PlyElement &element, const std::string &path, PlyValues
                                         element.properties[p].name, i, value));
             at[slots[p]] = value;
         }
+        attributes.finish_element();
         mesh.positions.emplace_back(at[x], at[y], at[z]);
         if (has_normals) {
             const glm::dvec3 normal(at[nx], at[ny], at[nz]);
@@ -239,8 +255,8 @@ std::optional<std::uint32_t> read_strip_index(const PlyProperty &property,
 /// Takes the polygons and strips of a file to the triangles of its mesh.
 class PlyFaces {
 public:
-    PlyFaces(Mesh &mesh, std::uint64_t vertex_count)
-        : mesh_(mesh), vertex_count_(vertex_count), polygons_(mesh) {}
+    PlyFaces(Mesh &mesh, std::uint64_t vertex_count, PlyAttributes &attributes)
+        : mesh_(mesh), vertex_count_(vertex_count), attributes_(attributes), polygons_(mesh) {}
 
     void read_polygons(const PlyElement &element, const std::string &path, PlyValues &values);
     void read_strips(const PlyElement &element, const std::string &path, PlyValues &values);
@@ -250,10 +266,14 @@ public:
 
 private:
     void add_polygon(const SourceLocation &where);
+    void cut_polygon(std::span<const std::uint32_t> vertices, const SourceLocation &where);
     void add_strip();
 
     Mesh &mesh_;
     std::uint64_t vertex_count_;
+    PlyAttributes &attributes_;
+    std::vector<std::uint32_t> face_of_; ///< by triangle; only with attributes of faces
+    std::uint32_t cut_faces_ = 0;
     MeshPolygons polygons_;
     std::vector<std::uint32_t> face_; ///< the vertices of the polygon or strip at hand
 
@@ -288,7 +308,12 @@ void PlyFaces::read_polygons(const PlyElement &element, const std::string &path,
     const PlyProperty &indices = indices_of(element, path);
     mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
-        for (const PlyProperty &property : element.properties) {
+        for (std::size_t p = 0; p < element.properties.size(); ++p) {
+            const PlyProperty &property = element.properties[p];
+            if (attributes_.wants(p)) {
+                read_attribute(element, p, i, values, attributes_);
+                continue;
+            }
             if (&property != &indices) {
                 skip(property, values);
                 continue;
@@ -302,17 +327,25 @@ void PlyFaces::read_polygons(const PlyElement &element, const std::string &path,
                 face_.push_back(read_index(property, vertex_count_, values));
             add_polygon(values.where());
         }
+        attributes_.finish_element();
     }
 }
 
 void PlyFaces::add_polygon(const SourceLocation &where) {
     if (mesh_.positions.size() == vertex_count_) {
-        polygons_.add(face_, where);
+        cut_polygon(face_, where);
         return;
     }
     early_vertices_.insert(early_vertices_.end(), face_.begin(), face_.end());
     early_sizes_.push_back(static_cast<std::uint32_t>(face_.size()));
     early_where_ = {where.file, 0};
+}
+
+void PlyFaces::cut_polygon(std::span<const std::uint32_t> vertices, const SourceLocation &where) {
+    polygons_.add(vertices, where);
+    if (!attributes_.is_empty())
+        face_of_.resize(mesh_.triangles.size(), cut_faces_);
+    ++cut_faces_;
 }
 
 void PlyFaces::read_strips(const PlyElement &element, const std::string &path, PlyValues &values) {
@@ -356,10 +389,11 @@ void PlyFaces::finish() {
     const std::span<const std::uint32_t> all = early_vertices_;
     std::size_t begin = 0;
     for (const std::uint32_t size : early_sizes_) {
-        polygons_.add(all.subspan(begin, size), early_where_);
+        cut_polygon(all.subspan(begin, size), early_where_);
         begin += size;
     }
     polygons_.finish();
+    attributes_.move_to(mesh_, &face_of_);
 }
 
 /// The element of that name, or nullptr.
@@ -397,19 +431,26 @@ Mesh read_ply_mesh(const std::string &path, const MeshReadOptions &options,
     warn_of_unread(header, path);
 
     // At least a triangle for each face; strips claim theirs as they come.
+    // Triangles of strips belong to no face.
+    static const std::set<std::string> no_attributes;
+    PlyAttributes of_vertices(*vertices, "vertex_", options.attributes, path);
+    PlyAttributes of_faces(has_faces ? *faces : *strips, "face_",
+                           has_strips ? no_attributes : options.attributes, path);
     if (const std::string reason = claim_memory(
             vertices->count * (sizeof(glm::dvec3) + sizeof(glm::vec3) + sizeof(glm::vec2)) +
-            (has_faces ? faces->count * sizeof(Mesh::triangles[0]) : 0));
+            of_vertices.bytes(vertices->count) +
+            (has_faces ? faces->count * sizeof(Mesh::triangles[0]) : 0) +
+            (has_faces ? of_faces.bytes(3 * faces->count) : 0));
         !reason.empty())
         throw InputError({path, vertices->line}, reason);
 
     // The elements follow in the order of the header.
     Mesh mesh;
-    PlyFaces all_faces(mesh, vertices->count);
+    PlyFaces all_faces(mesh, vertices->count, of_faces);
     PlyValues values(bytes, header, path);
     for (const PlyElement &element : header.elements) {
         if (&element == vertices)
-            read_vertices(element, path, values, mesh);
+            read_vertices(element, path, values, of_vertices, mesh);
         else if (&element == faces && has_faces)
             all_faces.read_polygons(element, path, values);
         else if (&element == strips && has_strips)
@@ -420,6 +461,7 @@ Mesh read_ply_mesh(const std::string &path, const MeshReadOptions &options,
                     skip(property, values);
     }
     all_faces.finish();
+    of_vertices.move_to(mesh);
     if (mesh.triangles.empty())
         throw InputError({path, 0}, "no strip with three vertices, expected a mesh of triangles");
 

@@ -7,21 +7,6 @@ namespace clrender::mitsuba {
 
 namespace {
 
-/// BSDFs of Mitsuba that are not built, and the nearest that is.
-const std::map<std::string, std::string> nearest_bsdfs{{"phong", "roughplastic"},
-                                                       {"ward", "roughconductor"},
-                                                       {"coating", "plastic"},
-                                                       {"roughcoating", "roughplastic"},
-                                                       {"roughdiffuse", "diffuse"},
-                                                       {"difftrans", "diffuse"},
-                                                       {"hair", "roughconductor"},
-                                                       {"measured", "roughconductor"},
-                                                       {"pplastic", "roughplastic"},
-                                                       {"polarizer", "null"},
-                                                       {"circular", "null"},
-                                                       {"retarder", "null"},
-                                                       {"measured_polarized", "roughconductor"}};
-
 std::vector<std::string> bsdf_types() {
     return {
 #define CLR_PLUGIN(type, Model) #type,
@@ -41,12 +26,7 @@ BsdfModel SceneReader::read_model_of(const std::string &type, Properties &proper
     }
 #include "bsdf_plugins.def"
 #undef CLR_PLUGIN
-    const auto nearest = nearest_bsdfs.find(type);
-    if (nearest == nearest_bsdfs.end())
-        fail_unsupported(document_, properties.object(), bsdf_types());
-    throw UnsupportedError(properties.where(), properties.description() +
-                                                   " is not supported, the nearest that is: " +
-                                                   in_quotes(nearest->second));
+    fail_unsupported(document_, properties.object(), bsdf_types());
 }
 
 int SceneReader::read_bsdf(int object) {
@@ -60,8 +40,10 @@ int SceneReader::read_bsdf(int object) {
     Bsdf bsdf;
     bsdf.id = properties.object().id;
     bsdf.where = properties.where();
-    bsdf.model = read_model_of(properties.object().type, properties);
-    properties.finish();
+    attempt([&] {
+        bsdf.model = read_model_of(properties.object().type, properties);
+        properties.finish();
+    });
 
     open_bsdfs_.erase(object);
     scene_.bsdfs.push_back(std::move(bsdf));

@@ -2,6 +2,7 @@
 
 #include "../input_file.h"
 #include "../log.h"
+#include "dialect.h"
 #include "mitsuba_parameters.h"
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
@@ -33,8 +34,10 @@ bool contains(const std::vector<std::string> &list, const std::string &item) {
 /// Walks the XML in document order and fills a Document.
 class DocumentReader {
 public:
-    explicit DocumentReader(const std::map<std::string, std::string> &defines)
-        : parameters_(defines) {}
+    DocumentReader(const std::map<std::string, std::string> &defines, bool all_faults)
+        : parameters_(defines) {
+        document_.all_faults = all_faults;
+    }
 
     Document read(const std::string &path) {
         read_file(path, {}, none, "");
@@ -47,7 +50,8 @@ public:
 
 private:
     struct Place {
-        const XmlFile &xml;
+        XmlFile &xml;
+        const Dialect &dialect;
         int file;   ///< index into Document::files
         int parent; ///< index into Document::objects, or none at the root
     };
@@ -56,6 +60,7 @@ private:
                    const std::string &name);
     void check_include(const std::string &path, const SourceLocation &referrer) const;
     void read_children(pugi::xml_node node, const Place &place);
+    void attempt_element(pugi::xml_node node, const Place &place);
     void read_element(pugi::xml_node node, const Place &place);
     int read_object(pugi::xml_node node, const Place &place);
     void read_value(pugi::xml_node node, const Place &place);
@@ -77,24 +82,6 @@ private:
     std::uintmax_t bytes_ = 0;
 };
 
-void check_version(pugi::xml_node root, const XmlFile &xml) {
-    const SourceLocation where = xml.where(root);
-    const pugi::xml_attribute attribute = root.attribute("version");
-    if (!attribute)
-        throw InputError(where, "<" + std::string(root.name()) +
-                                    "> has no version, expected version=\"3.0.0\"");
-    const std::string version = attribute.value();
-    const std::string major = version.substr(0, version.find('.'));
-    if (version.find_first_not_of("0123456789.") != std::string::npos || major.empty())
-        throw InputError(where, "version is " + in_quotes(version) + ", expected \"3.0.0\"");
-    if (major == "0" || major == "1")
-        throw InputError(where, "version " + in_quotes(version) +
-                                    " is older than Mitsuba 2, where names were changed (toWorld "
-                                    "to to_world, for one), expected \"3.0.0\" and today's names");
-    if (major != "2" && major != "3")
-        throw InputError(where, "version is " + in_quotes(version) + ", expected \"3.0.0\"");
-}
-
 void DocumentReader::check_include(const std::string &path, const SourceLocation &referrer) const {
     if (contains(open_files_, path))
         throw InputError(referrer, "the file includes itself by way of " + quoted_path(path) +
@@ -114,7 +101,7 @@ void DocumentReader::read_file(const std::string &path, const SourceLocation &re
     if (parent != none)
         check_include(canonical, referrer);
 
-    const XmlFile xml(path, referrer);
+    XmlFile xml(path, referrer);
     bytes_ += xml.size();
     if (bytes_ > max_xml_bytes)
         throw InputError(referrer, "the included files are too large, expected at most 256 MiB "
@@ -129,18 +116,18 @@ void DocumentReader::read_file(const std::string &path, const SourceLocation &re
     document_.files.push_back(std::move(file));
     open_files_.push_back(canonical);
 
-    const Place place{xml, static_cast<int>(document_.files.size()) - 1, parent};
     pugi::xml_node root = xml.root();
     parameters_.substitute(root, xml);
     const std::string tag = root.name();
     if (parent == none && tag != "scene")
         throw InputError(xml.where(root),
                          "the root element is " + in_quotes(tag) + ", expected <scene>");
-    check_version(root, xml);
+    const Dialect dialect(xml);
+    const Place place{xml, dialect, static_cast<int>(document_.files.size()) - 1, parent};
 
     // An included <scene> adds its content, any other root is itself a child.
     if (tag == "scene") {
-        check_attributes(root, xml, {"version"}, {"id", "name", "type"});
+        check_attributes(root, xml, {}, {"version", "id", "name", "type"});
         Place inside = place;
         if (parent == none) {
             document_.objects.push_back({tag, tag, "", place.file, xml.where(root).line, {}, {}});
@@ -159,9 +146,22 @@ void DocumentReader::read_file(const std::string &path, const SourceLocation &re
 void DocumentReader::read_children(pugi::xml_node node, const Place &place) {
     for (const pugi::xml_node child : node.children()) {
         if (child.type() == pugi::node_element)
-            read_element(child, place);
+            attempt_element(child, place);
         else if (child.type() == pugi::node_pcdata)
             log::warn(place.xml.where(child), "text " + in_quotes(child.value()) + " is ignored");
+    }
+}
+
+/// Reads an element; where all faults are asked for, notes what is wrong with it.
+void DocumentReader::attempt_element(pugi::xml_node node, const Place &place) {
+    const std::size_t open_files = open_files_.size();
+    try {
+        read_element(node, place);
+    } catch (const InputError &error) {
+        if (!document_.all_faults)
+            throw;
+        document_.faults.emplace_back(error.what());
+        open_files_.resize(open_files);
     }
 }
 
@@ -174,6 +174,7 @@ void DocumentReader::read_element(pugi::xml_node node, const Place &place) {
                                                        {"path", &DocumentReader::read_path}};
 
     parameters_.substitute(node, place.xml);
+    place.dialect.upgrade(node, place.xml);
     const std::string tag = node.name();
     const bool is_spectrum_object = tag == "spectrum" && node.attribute("type");
     if (contains(object_tags, tag) || is_spectrum_object) {
@@ -215,7 +216,7 @@ int DocumentReader::read_object(pugi::xml_node node, const Place &place) {
                                     ", expected another one");
     document_.objects.push_back(
         {node.name(), node.attribute("type").value(), id, place.file, where.line, {}, {}});
-    read_children(node, {place.xml, place.file, index});
+    read_children(node, {place.xml, place.dialect, place.file, index});
     return index;
 }
 
@@ -389,18 +390,29 @@ void DocumentReader::resolve_references() {
     for (const auto &[id, unused] : ids_)
         if (known.size() < 1000)
             known.push_back(id);
-    for (Object &parent : document_.objects)
-        for (Child &child : parent.children) {
-            if (child.object != none)
-                continue;
-            const auto target = ids_.find(child.ref_id);
-            if (target == ids_.end())
-                throw InputError(document_.where(parent, child.line),
-                                 "<ref> to the unknown id " + in_quotes(child.ref_id) + ", " +
-                                     (known.empty() ? "but no object of the scene has an id"
-                                                    : expected_one_of(child.ref_id, known)));
+    const auto resolve = [&](const Object &parent, Child &child) {
+        if (child.object != none)
+            return true;
+        const auto target = ids_.find(child.ref_id);
+        if (target != ids_.end()) {
             child.object = target->second;
+            return true;
         }
+        const InputError error(document_.where(parent, child.line),
+                               "<ref> to the unknown id " + in_quotes(child.ref_id) + ", " +
+                                   (known.empty() ? "but no object of the scene has an id"
+                                                  : expected_one_of(child.ref_id, known)));
+        if (!document_.all_faults)
+            throw error;
+        document_.faults.emplace_back(error.what());
+        return false;
+    };
+    for (Object &parent : document_.objects) {
+        auto &children = parent.children;
+        children.erase(std::remove_if(children.begin(), children.end(),
+                                      [&](Child &child) { return !resolve(parent, child); }),
+                       children.end());
+    }
 }
 
 } // namespace
@@ -412,8 +424,9 @@ std::string type_name(const PropertyValue &value) {
     return names.at(value.index());
 }
 
-Document read_document(const std::string &path, const std::map<std::string, std::string> &defines) {
-    return DocumentReader(defines).read(path);
+Document read_document(const std::string &path, const std::map<std::string, std::string> &defines,
+                       bool all_faults) {
+    return DocumentReader(defines, all_faults).read(path);
 }
 
 std::string find_file(const SourceFile &file, const std::string &name,

@@ -58,6 +58,8 @@ struct SourceFile {
 struct Document {
     std::vector<Object> objects; ///< the first one is the scene
     std::vector<SourceFile> files;
+    bool all_faults = false;         ///< faults do not end the reading where it can go on
+    std::vector<std::string> faults; ///< lines, of those that have not ended it
 
     [[nodiscard]] const Object &at(int index) const {
         return objects.at(static_cast<std::size_t>(index));
@@ -71,8 +73,9 @@ struct Document {
 };
 
 /// Reads `path` with all that it includes. `defines` win over <default>; a define that nothing
-/// uses is warned of. Throws InputError.
-Document read_document(const std::string &path, const std::map<std::string, std::string> &defines);
+/// uses is warned of. Throws InputError, with `all_faults` only for what leaves no document.
+Document read_document(const std::string &path, const std::map<std::string, std::string> &defines,
+                       bool all_faults = false);
 
 /// The regular file that `name` stands for in `file`. Throws InputError at `where` if there is
 /// none.

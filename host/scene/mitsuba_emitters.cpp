@@ -1,17 +1,46 @@
-/// Emitters: point, area, constant, envmap.
+/// Emitters: point, area, directionalarea, constant, envmap; those in emitter_<kind>.cpp are called
+/// from here.
 
 #include "../log.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 #include "scene/limits.h"
 
+#include <algorithm>
 #include <fmt/core.h>
 
 namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> emitter_types{"point", "area", "constant", "envmap"};
+const std::vector<std::string> emitter_types{
+    "point", "area", "constant", "envmap", "spot", "directional", "projector", "directionalarea"};
+
+bool belongs_to_shape(const std::string &type) {
+    return type == "area" || type == "directionalarea";
+}
+
+bool is_environment(const Emitter &emitter) {
+    return emitter.kind == EmitterKind::constant || emitter.kind == EmitterKind::envmap;
+}
+
+/// What is known and not built: what it lacks, or what serves instead.
+std::string reason_against(const std::string &type) {
+    if (type == "collimated")
+        return "is a beam without width, which no path meets by chance, expected a \"spot\" with a "
+               "small cutoff_angle";
+    if (type == "sunsky" || type == "timed_sunsky" || type == "sky" || type == "sun")
+        return "needs the tables of a model of the sky, which clrender does not have, expected an "
+               "\"envmap\" made of it, and a \"directional\" for the sun";
+    return {};
+}
+
+[[noreturn]] void refuse(const Properties &properties, const std::vector<std::string> &types) {
+    const std::string reason = reason_against(properties.object().type);
+    if (!reason.empty())
+        throw UnsupportedError(properties.where(), properties.description() + " " + reason);
+    fail_unsupported(properties.document(), properties.object(), types);
+}
 
 /// Weights steer the sampling of lights, not the picture, unless a light is never sampled.
 void accept_sampling_weight(Properties &properties) {
@@ -27,7 +56,7 @@ void accept_sampling_weight(Properties &properties) {
 void SceneReader::read_emitter(int object) {
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
-    if (type == "area") {
+    if (belongs_to_shape(type)) {
         if (area_emitters_.count(object) == 0)
             log::warn(properties.where(), "area light outside of a shape is ignored");
         return;
@@ -44,16 +73,22 @@ void SceneReader::read_emitter(int object) {
         properties.ignore({"to_world"});
     } else if (type == "envmap") {
         read_envmap(properties, emitter);
+    } else if (type == "spot") {
+        read_spot(properties, emitter);
+    } else if (type == "directional") {
+        read_directional(properties, emitter);
+    } else if (type == "projector") {
+        read_projector(properties, emitter);
     } else {
-        fail_unsupported(document_, properties.object(), emitter_types);
+        refuse(properties, emitter_types);
     }
     accept_sampling_weight(properties);
     properties.finish();
 
     // There is one environment at most.
-    if (emitter.kind != EmitterKind::point)
+    if (is_environment(emitter))
         for (const Emitter &other : scene_.emitters)
-            if (other.kind == EmitterKind::constant || other.kind == EmitterKind::envmap)
+            if (is_environment(other))
                 throw InputError(emitter.where, properties.description() +
                                                     " is a second environment, expected one "
                                                     "\"constant\" or \"envmap\"");
@@ -90,11 +125,12 @@ void SceneReader::read_envmap(Properties &properties, Emitter &emitter) {
 int SceneReader::read_area_emitter(int object, int shape) {
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
-    if (type == "point" || type == "constant" || type == "envmap")
-        throw InputError(properties.where(),
-                         properties.description() + " inside of a shape, expected an area light");
-    if (type != "area")
-        fail_unsupported(document_, properties.object(), {"area"});
+    if (!belongs_to_shape(type)) {
+        if (std::count(emitter_types.begin(), emitter_types.end(), type) > 0)
+            throw InputError(properties.where(), properties.description() +
+                                                     " inside of a shape, expected an area light");
+        refuse(properties, {"area", "directionalarea"});
+    }
     if (!area_emitters_.insert(object).second)
         throw InputError(properties.where(), properties.description() +
                                                  " belongs to two shapes, expected one for each");
@@ -104,6 +140,13 @@ int SceneReader::read_area_emitter(int object, int shape) {
     emitter.where = properties.where();
     emitter.shape = shape;
     emitter.radiance = read_colour(properties, "radiance", SpectrumUse::emission);
+    if (type == "directionalarea") {
+        // Every direction but one is dark, and no path takes that one by chance.
+        emitter.radiance = add_constant(Rgb(0));
+        log::warn(properties.where(), properties.description() +
+                                          " shines along its normals alone, where path tracing "
+                                          "finds none of its light: the shape is black");
+    }
     if (emitter.radiance == none)
         emitter.radiance = add_constant(Rgb(1));
     if (properties.has("to_world"))

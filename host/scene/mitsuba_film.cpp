@@ -90,12 +90,7 @@ void SceneReader::read_film(int object) {
         properties.choice("pixel_format", static_cast<std::size_t>(PixelFormat::rgb),
                           {"luminance", "luminance_alpha", "rgb", "rgba", "xyz", "xyza"}));
 
-    // One option under its name of today and its older one.
-    for (const char *name : {"sample_border", "high_quality_edges"})
-        if (properties.boolean(name, false))
-            throw UnsupportedError(properties.where(name),
-                                   properties.description() + ": " + in_quotes(name) +
-                                       " is not supported, expected \"false\"");
+    film.sample_border = properties.boolean("sample_border", false);
 
     // How the picture is stored is the command line's choice.
     properties.choice("file_format", 0, {"openexr", "exr", "rgbe", "pfm"});

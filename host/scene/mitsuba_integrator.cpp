@@ -1,9 +1,11 @@
-/// Integrators: path, direct, depth, and moment for the one inside of it.
+/// Integrators: path and those that estimate the same light, direct, depth, and those that add
+/// layers to the picture of one inside of them.
 
 #include "../log.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace clrender::mitsuba {
@@ -37,6 +39,45 @@ void read_direct(Properties &properties, Integrator &integrator) {
         properties.fail("bsdf_samples", "and emitter_samples are both 0, expected at least 1");
 }
 
+bool is_point_like(const Emitter &emitter) {
+    return emitter.kind != EmitterKind::area && emitter.kind != EmitterKind::constant &&
+           emitter.kind != EmitterKind::envmap;
+}
+
+bool is_smooth(const Bsdf &bsdf) {
+    return std::holds_alternative<ConductorBsdf>(bsdf.model) ||
+           std::holds_alternative<DielectricBsdf>(bsdf.model) ||
+           std::holds_alternative<ThinDielectricBsdf>(bsdf.model) ||
+           std::holds_alternative<PlasticBsdf>(bsdf.model);
+}
+
+bool lets_pass_straight(const Bsdf &bsdf) {
+    return std::holds_alternative<NullBsdf>(bsdf.model) ||
+           std::holds_alternative<MaskBsdf>(bsdf.model) ||
+           std::holds_alternative<ThinDielectricBsdf>(bsdf.model);
+}
+
+template <typename Items, typename Test> bool has_any(const Items &items, Test test) {
+    return std::any_of(items.begin(), items.end(), test);
+}
+
+/// Warns of light that the scene's own integrator finds and path tracing does not, or counts
+/// otherwise.
+void warn_of_differences(const Scene &scene, const SourceLocation &where, const SameLight &other) {
+    const bool has_point_like = has_any(scene.emitters, is_point_like);
+    if (other.finds_caustics && has_point_like && has_any(scene.bsdfs, is_smooth))
+        log::warn(where, "light of lights without extent that smooth glass or mirrors bring "
+                         "(caustics) is found by this integrator, but not by path tracing");
+    if (!other.skips_passages || !has_any(scene.bsdfs, lets_pass_straight))
+        return;
+    if (scene.integrator.max_depth >= 0)
+        log::warn(where, "what lets light pass straight (null, mask, thindielectric) counts as a "
+                         "segment of \"max_depth\" in path tracing, but not in this integrator");
+    if (has_point_like)
+        log::warn(where, "lights without extent do not shine through what lets light pass "
+                         "straight in path tracing, but do in this integrator");
+}
+
 } // namespace
 
 void SceneReader::read_integrator(int object) {
@@ -56,23 +97,56 @@ void SceneReader::read_integrator(int object) {
     } else if (type == "depth") {
         integrator.kind = IntegratorKind::depth;
         properties.ignore({"hide_emitters"});
-    } else if (type == "moment") {
-        // The moments are further channels: the picture is that of the integrator inside.
-        properties.ignore({"hide_emitters"});
-        const auto nested = properties.children("integrator");
-        if (nested.size() != 1)
-            throw InputError(properties.where(), properties.description() + " has " +
-                                                     std::to_string(nested.size()) +
-                                                     " nested integrators, expected one");
-        if (document_.at(nested[0]->object).type == "moment")
-            throw InputError(properties.where(), properties.description() +
-                                                     " is nested, expected a path integrator "
-                                                     "inside");
-        read_integrator(nested[0]->object);
+    } else if (type == "aov" || type == "moment") {
+        read_layers(properties);
+    } else if (type == "direct_projective" || type == "direct_reparam") {
+        read_direct(properties, integrator);
+        properties.ignore_everything();
+        log::warn(properties.where(), properties.description() + " is rendered as \"direct\"");
+    } else if (const SameLight *other = same_light_as_path(type)) {
+        read_other_integrator(properties, *other);
     } else {
-        fail_unsupported(document_, properties.object(), {"path", "direct", "depth", "moment"});
+        fail_unsupported(document_, properties.object(),
+                         {"path", "direct", "depth", "aov", "moment"});
     }
     properties.finish();
+}
+
+void SceneReader::read_other_integrator(Properties &properties, const SameLight &other) {
+    Integrator &integrator = scene_.integrator;
+    integrator.max_depth = other.max_depth;
+    read_path(properties, integrator);
+
+    // What else it states tells how the light is found, not how much there is.
+    properties.ignore_everything();
+    log::warn(properties.where(), properties.description() +
+                                      " is rendered by path tracing, which estimates the same "
+                                      "light");
+    warn_of_differences(scene_, properties.where(), other);
+}
+
+/// The picture is that of the first integrator inside.
+void SceneReader::read_layers(Properties &properties) {
+    properties.ignore({"hide_emitters"});
+    const auto nested = properties.children("integrator");
+    const std::string layers = properties.string("aovs").value_or("");
+    if (nested.empty())
+        throw UnsupportedError(properties.where(), properties.description() +
+                                                       " has no nested integrator, expected one: "
+                                                       "layers without a picture are not "
+                                                       "supported");
+    const Object &first = document_.at(nested[0]->object);
+    if (first.type == "aov" || first.type == "moment")
+        throw InputError(properties.where(), properties.description() +
+                                                 " is nested, expected a path integrator inside");
+    if (nested.size() > 1)
+        log::warn(document_.where(properties.object(), nested[1]->line),
+                  properties.description() + " has " + std::to_string(nested.size()) +
+                      " nested integrators: the picture of the first is rendered");
+    log::warn(properties.where(), properties.description() + ": its layers " +
+                                      (layers.empty() ? "" : in_quotes(layers) + " ") +
+                                      "are not written");
+    read_integrator(nested[0]->object);
 }
 
 } // namespace clrender::mitsuba

@@ -3,6 +3,7 @@
 #include "../log.h"
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
+#include "unsupported.h"
 
 #include <algorithm>
 #include <cmath>
@@ -150,10 +151,16 @@ std::string Properties::file(const std::string &name) {
 }
 
 void Properties::ignore(const std::vector<std::string> &names) {
-    for (const std::string &name : names)
-        if (find(name) != nullptr)
-            log::detail(where(name).str() + ": " + in_quotes(name) + " of " + description() +
-                        " does not change the picture");
+    for (const std::string &name : names) {
+        if (find(name) == nullptr)
+            continue;
+        const std::string text = where(name).str() + ": " + in_quotes(name) + " of " +
+                                 description() + " does not change the picture";
+        if (document_.all_faults)
+            log::info(text);
+        else
+            log::detail(text);
+    }
 }
 
 void Properties::ignore_everything() {
@@ -161,28 +168,40 @@ void Properties::ignore_everything() {
     std::fill(used_children_.begin(), used_children_.end(), true);
 }
 
+std::string Properties::fault_of(const Child &child, const std::vector<std::string> &known) const {
+    const Object &target = document_.at(child.object);
+    const std::string what = target.tag + " " + in_quotes(target.type) +
+                             (child.name.empty() ? "" : " named " + in_quotes(child.name));
+    if (const std::string nearest = nearest_supported(target.tag, target.type);
+        !nearest.empty() && (target.tag == "medium" || target.tag == "subsurface"))
+        return what + " in " + description() + " is not supported, the nearest that is: " + nearest;
+    return description() + " has the unexpected child " + what + ", " +
+           expected_one_of(child.name, known);
+}
+
 void Properties::finish() const {
     std::vector<std::string> known = known_;
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
+    std::vector<std::string> faults;
     for (std::size_t i = 0; i < used_properties_.size(); ++i)
         if (!used_properties_[i]) {
             const Property &property = object_.properties[i];
-            throw InputError(document_.where(object_, property.line),
-                             description() + " has the unknown property " +
-                                 in_quotes(property.name) + ", " +
-                                 expected_one_of(property.name, known));
+            faults.push_back(document_.where(object_, property.line).str() + ": " + description() +
+                             " has the unknown property " + in_quotes(property.name) + ", " +
+                             expected_one_of(property.name, known));
         }
     for (std::size_t i = 0; i < used_children_.size(); ++i)
         if (!used_children_[i]) {
             const Child &child = object_.children[i];
-            const Object &target = document_.at(child.object);
-            throw InputError(document_.where(object_, child.line),
-                             description() + " has the unexpected child " + target.tag + " " +
-                                 in_quotes(target.type) +
-                                 (child.name.empty() ? "" : " named " + in_quotes(child.name)) +
-                                 ", " + expected_one_of(child.name, known));
+            faults.push_back(document_.where(object_, child.line).str() + ": " +
+                             fault_of(child, known));
         }
+    if (faults.empty())
+        return;
+    if (!document_.all_faults)
+        faults.resize(1);
+    throw InputError(faults);
 }
 
 void Properties::fail(const std::string &name, const std::string &what) const {
@@ -191,9 +210,12 @@ void Properties::fail(const std::string &name, const std::string &what) const {
 
 void fail_unsupported(const Document &document, const Object &object,
                       const std::vector<std::string> &types) {
-    throw UnsupportedError(document.where(object),
-                           object.tag + " of type " + in_quotes(object.type) +
-                               " is not supported, " + expected_one_of(object.type, types));
+    const SourceLocation where = document.where(object);
+    if (const std::string nearest = nearest_supported(object.tag, object.type); !nearest.empty())
+        throw UnsupportedError(where, object.tag + " " + in_quotes(object.type) +
+                                          " is not supported, the nearest that is: " + nearest);
+    throw UnsupportedError(where, object.tag + " of type " + in_quotes(object.type) +
+                                      " is not supported, " + expected_one_of(object.type, types));
 }
 
 } // namespace clrender::mitsuba

@@ -55,17 +55,20 @@ public:
     /// All children with this tag, whatever their names.
     std::vector<const Child *> children(const std::string &tag);
 
-    /// Accepts values that cannot change the picture.
+    /// Accepts values that cannot change the picture; told of where all faults are asked for.
     void ignore(const std::vector<std::string> &names);
     void ignore_everything();
 
-    /// Throws InputError if there is a value or child that nobody asked for.
+    /// Throws InputError if there is a value or child that nobody asked for; with a line for each
+    /// if all faults are asked for.
     void finish() const;
 
     /// Throws InputError about `name`: "shape "sphere": radius is -1, expected ...".
     [[noreturn]] void fail(const std::string &name, const std::string &what) const;
 
 private:
+    [[nodiscard]] std::string fault_of(const Child &child,
+                                       const std::vector<std::string> &known) const;
     template <typename T> const T *get(const std::string &name, const char *expected);
 
     const Document &document_;

@@ -4,6 +4,7 @@
 #include "mitsuba_text.h"
 
 #include <algorithm>
+#include <fmt/core.h>
 #include <sstream>
 #include <tbb/parallel_for.h>
 
@@ -20,6 +21,7 @@ Scene SceneReader::read() {
     // Definitions that others refer to have been read with those; here they mean nothing.
     root.children("texture");
     root.children("spectrum");
+    root.children("medium"); // told of where an object has it
     for (const char *tag : {"film", "sampler"})
         for (const Child *child : root.children(tag))
             log::detail(document_.where(root.object(), child->line).str() + ": <" + tag +
@@ -31,20 +33,37 @@ Scene SceneReader::read() {
     return std::move(scene_);
 }
 
-/// Runs a step of reading; where all faults are asked for, notes what it throws.
-void SceneReader::attempt(const std::function<void()> &step) {
+/// Runs a step of reading; where all faults are asked for, notes what it throws. False if it has
+/// thrown.
+bool SceneReader::attempt(const std::function<void()> &step) {
     try {
         step();
+        return true;
     } catch (const InputError &error) {
         if (!all_faults_)
             throw;
-        open_bsdfs_.clear();
 
         // Objects that are used twice fail twice.
         std::istringstream lines(error.what());
         for (std::string line; std::getline(lines, line);)
             if (std::find(faults_.begin(), faults_.end(), line) == faults_.end())
                 faults_.push_back(line);
+        return false;
+    }
+}
+
+/// Reads what stands inside of an object that has failed, for its faults alone.
+void SceneReader::check_children(int object) {
+    for (const Child &child : document_.at(object).children) {
+        const std::string &tag = document_.at(child.object).tag;
+        if (tag == "bsdf")
+            attempt([&] { read_bsdf(child.object); });
+        else if (tag == "film")
+            attempt([&] { read_film(child.object); });
+        else if (tag == "sampler")
+            attempt([&] { read_sampler(child.object); });
+        else if (tag == "emitter" && area_emitters_.count(child.object) == 0)
+            attempt([&] { read_area_emitter(child.object, none); });
     }
 }
 
@@ -62,8 +81,12 @@ void SceneReader::warn_of_missing(Properties &root) const {
 void SceneReader::read_shapes(Properties &root) {
     std::set<int> seen; // a <ref> to a shape of the scene adds nothing
     for (const Child *child : root.children("shape"))
-        if (seen.insert(child->object).second)
-            attempt([&] { read_shape(child->object); });
+        if (seen.insert(child->object).second && !attempt([&] { read_shape(child->object); })) {
+            // The files of what failed belong to no shape.
+            while (!shapes_from_files_.empty() && shapes_from_files_.back() >= scene_.shapes.size())
+                shapes_from_files_.pop_back();
+            check_children(child->object);
+        }
 }
 
 void SceneReader::read_scene_emitters(Properties &root) {
@@ -81,18 +104,31 @@ void SceneReader::read_files() {
     finish_groups();
 }
 
-void SceneReader::read_view(Properties &root) {
+void SceneReader::read_chosen_sensor(Properties &root) {
     const auto sensors = root.children("sensor");
-    attempt([&] {
-        if (sensors.empty())
-            place_default_sensor();
-        else
-            read_sensor(sensors[0]->object);
-    });
-    if (sensors.size() > 1)
+    const std::size_t count = std::max(sensors.size(), std::size_t(1));
+    const auto chosen = static_cast<std::size_t>(chosen_sensor_.value_or(0));
+    if (chosen >= count)
+        throw InputError(root.where(),
+                         fmt::format("the scene has {}, expected --sensor from 0 to {}",
+                                     count == 1 ? "one sensor" : fmt::format("{} sensors", count),
+                                     count - 1));
+    if (count > 1 && !chosen_sensor_)
         log::warn(document_.where(root.object(), sensors[1]->line),
-                  "the scene has " + std::to_string(sensors.size()) +
-                      " sensors: only the first one is used");
+                  fmt::format("the scene has {} sensors: only the first one is used (--sensor 0 to "
+                              "{} chooses)",
+                              count, count - 1));
+    if (sensors.empty()) {
+        place_default_sensor();
+        return;
+    }
+    const bool is_read = attempt([&] { read_sensor(sensors[chosen]->object); });
+    if (!is_read)
+        check_children(sensors[chosen]->object);
+}
+
+void SceneReader::read_view(Properties &root) {
+    attempt([&] { read_chosen_sensor(root); });
 
     const auto integrators = root.children("integrator");
     attempt([&] {
@@ -106,6 +142,7 @@ void SceneReader::read_view(Properties &root) {
 
 void SceneReader::check_unused_bsdfs(Properties &root) {
     SceneReader checker(document_);
+    checker.all_faults_ = false;
     checker.load_images_ = false;
     for (const Child *child : root.children("bsdf")) {
         if (bsdfs_.count(child->object) > 0)
@@ -114,6 +151,10 @@ void SceneReader::check_unused_bsdfs(Properties &root) {
             checker.read_bsdf(child->object);
         } catch (const UnsupportedError &error) {
             log::warn(std::string(error.what()) + " (no shape uses it)");
+            checker.open_bsdfs_.clear();
+        } catch (const InputError &) {
+            checker.open_bsdfs_.clear();
+            attempt([] { throw; });
         }
     }
 }

@@ -4,6 +4,7 @@
 #include "mitsuba_document.h"
 #include "mitsuba_properties.h"
 #include "named_media.h"
+#include "same_light.h"
 #include "scene.h"
 #include "scene_files.h"
 #include "spectrum.h"
@@ -21,20 +22,24 @@ namespace clrender::mitsuba {
 
 class SceneReader {
 public:
-    /// `all_faults`: what is wrong with one object does not keep the others from being read.
-    explicit SceneReader(const Document &document, bool all_faults = false)
-        : document_(document), all_faults_(all_faults) {}
+    /// Where the document asks for all faults, what is wrong with one object does not keep the
+    /// others from being read. `sensor`: the one to look through, counted from 0; else the first.
+    explicit SceneReader(const Document &document, std::optional<int> sensor = {})
+        : document_(document), all_faults_(document.all_faults), chosen_sensor_(sensor),
+          faults_(document.faults) {}
 
     /// Throws InputError, with a line for each fault if all are asked for.
     Scene read();
 
 private:
     // mitsuba_scene.cpp
-    void attempt(const std::function<void()> &step);
+    bool attempt(const std::function<void()> &step);
+    void check_children(int object);
     void read_shapes(Properties &root);
     void read_scene_emitters(Properties &root);
     void read_files();
     void read_view(Properties &root);
+    void read_chosen_sensor(Properties &root);
     void check_unused_bsdfs(Properties &root);
     void place_default_sensor();
     void warn_of_missing(Properties &root) const;
@@ -42,10 +47,15 @@ private:
     // mitsuba_textures.cpp; all return indices into Scene::textures
     int add_constant(const Rgb &value);
     int read_texture(int object, SpectrumUse use);
+    int read_new_texture(int object, SpectrumUse use);
     int read_bitmap(Properties &properties, SpectrumUse use);
     int read_checkerboard(Properties &properties, SpectrumUse use);
     int read_spectrum_object(Properties &properties, SpectrumUse use);
     int read_raw_constant(Properties &properties, SpectrumUse use);
+    // mitsuba_attributes.cpp
+    int read_mesh_attribute(Properties &properties);
+    /// Notes the attributes that a shape's textures show, to be checked when its mesh is read.
+    void read_attributes_of(int object, Shape &shape);
     /// The colour or texture `name` of an object, or none.
     int read_colour(Properties &properties, const std::string &name, SpectrumUse use);
     /// The texture of the numbers `name`.
@@ -95,15 +105,22 @@ private:
     int read_area_emitter(int object, int shape);
     void read_point(Properties &properties, Emitter &emitter);
     void read_envmap(Properties &properties, Emitter &emitter);
+    // emitter_<kind>.cpp
+    void read_spot(Properties &properties, Emitter &emitter);
+    void read_directional(Properties &properties, Emitter &emitter);
+    void read_projector(Properties &properties, Emitter &emitter);
 
     // mitsuba_sensor.cpp, mitsuba_film.cpp, mitsuba_integrator.cpp
     void read_sensor(int object);
     void read_sampler(int object);
     void read_film(int object);
     void read_integrator(int object);
+    void read_other_integrator(Properties &properties, const SameLight &other);
+    void read_layers(Properties &properties);
 
     const Document &document_;
     bool all_faults_;
+    std::optional<int> chosen_sensor_;
     std::vector<std::string> faults_; ///< lines, each once
     Scene scene_;
     bool load_images_ = true;  ///< off while objects that no shape uses are checked
@@ -131,6 +148,13 @@ IndicesOfRefraction read_iors(Properties &properties, IndicesOfRefraction ior = 
 PerturbedNormals read_perturbed_normals(Properties &properties);
 /// The distribution of microfacets; how it is sampled changes the noise alone.
 MicrofacetKind read_distribution(Properties &properties);
+
+struct FieldOfView {
+    double degrees;
+    FovAxis axis;
+};
+/// `fov` and `fov_axis`, or `focal_length`, of cameras and projectors.
+FieldOfView read_field_of_view(Properties &properties);
 
 /// One of the reconstruction filters.
 ReconstructionFilter read_filter(const Document &document, int object);

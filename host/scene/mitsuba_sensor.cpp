@@ -1,4 +1,4 @@
-/// Sensors (perspective, thinlens) and samplers.
+/// Sensors (perspective, thinlens, orthographic) and samplers.
 
 #include "../log.h"
 #include "mitsuba_scene.h"
@@ -22,32 +22,6 @@ double fov_of_focal_length(double millimetres) {
     return glm::degrees(2 * std::atan(film_diagonal / (2 * millimetres)));
 }
 
-void read_field_of_view(Properties &properties, Sensor &sensor) {
-    const auto fov = properties.number("fov");
-    const auto focal_length = properties.string("focal_length");
-    if (fov && focal_length)
-        properties.fail("focal_length", "and fov are both given, expected only one of them");
-    sensor.fov_axis = static_cast<FovAxis>(
-        properties.choice("fov_axis", 0, {"x", "y", "diagonal", "smaller", "larger"}));
-    if (fov) {
-        if (!(*fov > 0 && *fov < 180))
-            properties.fail("fov", "is out of range, expected degrees above 0 and below 180");
-        sensor.fov = *fov;
-        return;
-    }
-
-    // Without either, Mitsuba takes a lens of 50 mm.
-    std::string text = focal_length.value_or("50mm");
-    if (text.size() > 2 && text.substr(text.size() - 2) == "mm")
-        text.resize(text.size() - 2);
-    const double millimetres =
-        parse_number(properties.where("focal_length"), "\"focal_length\"", text);
-    if (!(millimetres > 0))
-        properties.fail("focal_length", "is not positive, expected a length such as \"50mm\"");
-    sensor.fov = fov_of_focal_length(millimetres);
-    sensor.fov_axis = FovAxis::diagonal;
-}
-
 void read_clip_distances(Properties &properties, Sensor &sensor) {
     sensor.near_clip = properties.number("near_clip");
     sensor.far_clip = properties.number("far_clip");
@@ -58,9 +32,6 @@ void read_clip_distances(Properties &properties, Sensor &sensor) {
 }
 
 void read_lens(Properties &properties, Sensor &sensor) {
-    sensor.focus_distance = properties.number("focus_distance", sensor.focus_distance);
-    if (properties.object().type == "perspective")
-        return;
     sensor.kind = SensorKind::thinlens;
     if (!properties.has("aperture_radius"))
         throw InputError(properties.where(), properties.description() +
@@ -72,14 +43,30 @@ void read_lens(Properties &properties, Sensor &sensor) {
         properties.fail("focus_distance", "is not positive, expected a distance above 0");
 }
 
-glm::dmat4 read_camera_transform(Properties &properties) {
-    const glm::dmat4 matrix = properties.transform("to_world");
+void check_unscaled(const Properties &properties, const glm::dmat4 &to_world) {
     constexpr double tolerance = 1e-3;
     for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(glm::length(glm::dvec3(matrix[axis])) - 1) > tolerance)
+        if (std::abs(glm::length(glm::dvec3(to_world[axis])) - 1) > tolerance)
             properties.fail("to_world", "scales the camera, expected only rotations and "
                                         "translations");
-    return matrix;
+}
+
+[[noreturn]] void refuse_sensor(const Properties &properties) {
+    const std::string &type = properties.object().type;
+    if (type == "batch")
+        throw UnsupportedError(properties.where(),
+                               properties.description() +
+                                   " joins several sensors to one picture, expected these in its "
+                                   "place: --sensor chooses one of them");
+    for (const char *meter : {"irradiancemeter", "radiancemeter", "mradiancemeter", "fluencemeter",
+                              "distant", "hdistant", "mdistant", "distantflux"})
+        if (type == meter)
+            throw UnsupportedError(properties.where(),
+                                   properties.description() +
+                                       " is a meter and takes no picture, expected a "
+                                       "\"perspective\", \"thinlens\" or \"orthographic\" camera");
+    fail_unsupported(properties.document(), properties.object(),
+                     {"perspective", "thinlens", "orthographic"});
 }
 
 /// The only child of a kind, or none.
@@ -93,21 +80,54 @@ int single_child(Properties &properties, const std::string &tag) {
 
 } // namespace
 
+FieldOfView read_field_of_view(Properties &properties) {
+    const auto fov = properties.number("fov");
+    const auto focal_length = properties.string("focal_length");
+    if (fov && focal_length)
+        properties.fail("focal_length", "and fov are both given, expected only one of them");
+    const auto axis = static_cast<FovAxis>(
+        properties.choice("fov_axis", 0, {"x", "y", "diagonal", "smaller", "larger"}));
+    if (fov) {
+        if (!(*fov > 0 && *fov < 180))
+            properties.fail("fov", "is out of range, expected degrees above 0 and below 180");
+        return {*fov, axis};
+    }
+
+    // Without either, Mitsuba takes a lens of 50 mm.
+    std::string text = focal_length.value_or("50mm");
+    if (text.size() > 2 && text.substr(text.size() - 2) == "mm")
+        text.resize(text.size() - 2);
+    const double millimetres =
+        parse_number(properties.where("focal_length"), "\"focal_length\"", text);
+    if (!(millimetres > 0))
+        properties.fail("focal_length", "is not positive, expected a length such as \"50mm\"");
+    return {fov_of_focal_length(millimetres), FovAxis::diagonal};
+}
+
 void SceneReader::read_sensor(int object) {
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
-    if (type != "perspective" && type != "thinlens")
-        fail_unsupported(document_, properties.object(), {"perspective", "thinlens"});
+    if (type != "perspective" && type != "thinlens" && type != "orthographic")
+        refuse_sensor(properties);
 
     Sensor &sensor = scene_.sensor;
     sensor = Sensor();
     sensor.where = properties.where();
-    sensor.to_world = read_camera_transform(properties);
-    read_field_of_view(properties, sensor);
+    sensor.to_world = properties.transform("to_world");
     read_clip_distances(properties, sensor);
-    read_lens(properties, sensor);
-    sensor.principal_point_offset = {properties.number("principal_point_offset_x", 0),
-                                     properties.number("principal_point_offset_y", 0)};
+    sensor.focus_distance = properties.number("focus_distance", sensor.focus_distance);
+    if (type == "orthographic") {
+        sensor.kind = SensorKind::orthographic;
+    } else {
+        check_unscaled(properties, sensor.to_world);
+        const FieldOfView field = read_field_of_view(properties);
+        sensor.fov = field.degrees;
+        sensor.fov_axis = field.axis;
+        sensor.principal_point_offset = {properties.number("principal_point_offset_x", 0),
+                                         properties.number("principal_point_offset_y", 0)};
+    }
+    if (type == "thinlens")
+        read_lens(properties, sensor);
     properties.ignore({"shutter_open", "shutter_close"});
 
     read_film(single_child(properties, "film"));

@@ -1,4 +1,4 @@
-/// Shapes: sphere, rectangle, disk, cube, obj, ply; groups and instances lead to
+/// Shapes: sphere, rectangle, disk, cube, obj, ply, serialized; groups and instances lead to
 /// mitsuba_instances.cpp.
 
 #include "cube_mesh.h"
@@ -17,8 +17,8 @@ namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> shape_types{"sphere", "rectangle", "disk",       "cube",
-                                           "obj",    "ply",       "shapegroup", "instance"};
+const std::vector<std::string> shape_types{"sphere", "rectangle",  "disk",       "cube",    "obj",
+                                           "ply",    "serialized", "shapegroup", "instance"};
 
 void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
     lowest = glm::min(lowest, point);
@@ -73,6 +73,7 @@ void SceneReader::read_shape(int object) {
             read_mesh_file(properties, shape);
     }
     read_surface(properties, shape);
+    read_attributes_of(object, shape);
     properties.finish();
     scene_.shapes.push_back(std::move(shape));
 }
@@ -90,10 +91,17 @@ void SceneReader::read_sphere(Properties &properties, Shape &shape) {
 }
 
 void SceneReader::read_mesh_file(Properties &properties, Shape &shape) {
-    const auto format = properties.object().type == "obj" ? MeshFormat::obj : MeshFormat::ply;
+    const std::string &type = properties.object().type;
+    const auto format = type == "obj"   ? MeshFormat::obj
+                        : type == "ply" ? MeshFormat::ply
+                                        : MeshFormat::serialized;
     MeshReadOptions options;
     options.face_normals = properties.boolean("face_normals", false);
-    options.flip_tex_coords = properties.boolean("flip_tex_coords", format == MeshFormat::obj);
+    if (format == MeshFormat::serialized)
+        options.shape_index = static_cast<int>(
+            properties.integer("shape_index", 0, 0, std::numeric_limits<int>::max()));
+    else
+        options.flip_tex_coords = properties.boolean("flip_tex_coords", format == MeshFormat::obj);
     const std::string path = properties.file("filename");
     shapes_from_files_.push_back(scene_.shapes.size());
     shape.mesh = files_.mesh(format, path, options, properties.where("filename"));

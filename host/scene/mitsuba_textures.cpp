@@ -122,6 +122,16 @@ int SceneReader::read_number(Properties &properties, const std::string &name, do
 int SceneReader::read_texture(int object, SpectrumUse use) {
     if (const auto known = textures_.find({object, use}); known != textures_.end())
         return known->second;
+    int index = none;
+    if (!attempt([&] { index = read_new_texture(object, use); }))
+        index = add_constant(Rgb(0.5)); // nothing is rendered
+    if (use == SpectrumUse::number)
+        make_number(scene_.textures.at(static_cast<std::size_t>(index)));
+    textures_[{object, use}] = index;
+    return index;
+}
+
+int SceneReader::read_new_texture(int object, SpectrumUse use) {
     Properties properties(document_, object);
     const std::string &type = properties.object().type;
     int index = none;
@@ -129,6 +139,8 @@ int SceneReader::read_texture(int object, SpectrumUse use) {
         index = read_bitmap(properties, use);
     else if (type == "checkerboard")
         index = read_checkerboard(properties, use);
+    else if (type == "mesh_attribute")
+        index = read_mesh_attribute(properties);
     else if (type == "rawconstant")
         index = read_raw_constant(properties, use);
     else if (type == "uniform" || type == "srgb" || type == "d65")
@@ -136,9 +148,6 @@ int SceneReader::read_texture(int object, SpectrumUse use) {
     else
         fail_unsupported(document_, properties.object(), texture_types);
     properties.finish();
-    if (use == SpectrumUse::number)
-        make_number(scene_.textures.at(static_cast<std::size_t>(index)));
-    textures_[{object, use}] = index;
     return index;
 }
 

@@ -1,5 +1,6 @@
 #include "model_scene.h"
 
+#include "mesh_attributes.h"
 #include "mesh_io.h"
 #include "scene_files.h"
 
@@ -248,6 +249,28 @@ glm::dmat4 look_along(const glm::dvec3 &origin, const glm::dvec3 &direction) {
     return {glm::dvec4(x, 0), glm::dvec4(y, 0), glm::dvec4(z, 0), glm::dvec4(origin, 1)};
 }
 
+/// The attribute that a bare model is coloured by, with its colours made linear; null for none.
+const MeshAttribute *colors_of(Mesh &mesh) {
+    for (const char *name : {"vertex_color", "face_color"})
+        for (MeshAttribute &attribute : mesh.attributes)
+            if (attribute.name == name && attribute.channels == 3 && !attribute.values.empty()) {
+                decode_colors(attribute);
+                return &attribute;
+            }
+    return nullptr;
+}
+
+/// Shows the colours of a mesh on a shape without material.
+void show_colors(Scene &scene, const MeshAttribute &colors, Shape &shape) {
+    Texture texture;
+    texture.kind = TextureKind::attribute;
+    texture.attribute = colors.name;
+    const int index = static_cast<int>(scene.textures.size());
+    scene.textures.push_back(std::move(texture));
+    shape.attribute_textures.push_back(index);
+    shape.bsdf = add_diffuse(scene, index);
+}
+
 void add_model(Scene &scene, ObjFile &model) {
     SceneFiles files;
     TextureColors colors;
@@ -265,6 +288,8 @@ void add_model(Scene &scene, ObjFile &model) {
             bsdfs[part.material] = maker.add(*material);
         Shape &shape = add_shape(scene, ShapeKind::mesh, glm::dmat4(1.0),
                                  material ? bsdfs[part.material] : default_bsdf);
+        if (const MeshAttribute *colors = material == nullptr ? colors_of(part.mesh) : nullptr)
+            show_colors(scene, *colors, shape);
         shape.mesh = std::make_shared<const Mesh>(std::move(part.mesh));
         shape.id = part.material;
         if (material != nullptr &&
@@ -318,7 +343,8 @@ Scene load_model(const std::string &path) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     ObjFile model;
     if (extension == ".ply")
-        model.parts.push_back({"", read_ply_mesh(path, {})});
+        model.parts.push_back(
+            {"", read_ply_mesh(path, {.attributes = {"vertex_color", "face_color"}})});
     else
         model = read_obj_file(path);
 

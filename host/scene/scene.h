@@ -17,7 +17,7 @@
 
 namespace clrender {
 
-enum class TextureKind { constant, bitmap, checkerboard };
+enum class TextureKind { constant, bitmap, checkerboard, attribute };
 enum class TextureFilter { bilinear, nearest };
 enum class TextureWrap { repeat, mirror, clamp };
 
@@ -34,8 +34,22 @@ struct Texture {
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard
+    std::string attribute;        ///< attribute: its name, as MeshAttribute has it
+    double scale = 1;             ///< attribute
     glm::dmat3 to_uv{1.0};
 };
+
+/// What a mesh holds for textures: a colour or a number by vertex, which is interpolated, or by
+/// triangle.
+struct MeshAttribute {
+    std::string name;          ///< begins with "vertex_" or "face_"
+    std::size_t channels = 3;  ///< 1 or 3
+    double whole = 0;          ///< of integers the largest that their type holds, else 0
+    std::vector<float> values; ///< `channels` a vertex or triangle; empty: nothing asks for it
+};
+
+/// Whether an attribute of that name is one of faces.
+bool is_face_attribute(const std::string &name);
 
 /// An indexed triangle mesh in its own object space, before Shape::to_world.
 struct Mesh {
@@ -43,6 +57,7 @@ struct Mesh {
     std::vector<glm::vec3> normals; ///< per vertex, unit length, or empty: flat
     std::vector<glm::vec2> uvs;     ///< per vertex, or empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<MeshAttribute> attributes;
     bool has_computed_normals = false; ///< the file states none: they are smooth_normals()
 };
 
@@ -63,6 +78,7 @@ struct Shape {
     bool flip_normals = false;
     int bsdf = none;    ///< index; the readers give a default diffuse .5 BSDF to shapes without one
     int emitter = none; ///< index of an area emitter
+    std::vector<int> attribute_textures; ///< those of kind `attribute` that it shows
     std::string id;
     SourceLocation where;
 };
@@ -80,25 +96,37 @@ struct ShapeInstance {
     glm::dmat4x3 to_world{1.0};
 };
 
-enum class EmitterKind { point, area, constant, envmap };
+enum class FovAxis { x, y, diagonal, smaller, larger };
 
+enum class EmitterKind { point, area, constant, envmap, spot, directional, projector };
+
+/// Spots and projectors shine along +z of their own space. A spot's texture covers the square
+/// around its cone, u along +x and v along +y; a projector's picture lies as a camera's does, +y up
+/// and +x to the left, its first row on top.
 struct Emitter {
     EmitterKind kind = EmitterKind::area;
-    int radiance = none;      ///< area, constant: texture index (constant: a constant one)
-    Rgb intensity{0.0};       ///< point: W/sr
-    glm::dvec3 position{0.0}; ///< point
-    int shape = none;         ///< area
+    /// Texture index. area; constant: a constant one; spot: what its light is multiplied with, or
+    /// none; projector: a pi-th of the irradiance at distance 1, before `scale`.
+    int radiance = none;
+    Rgb intensity{0.0};        ///< point, spot: W/sr; directional: W/m^2
+    glm::dvec3 position{0.0};  ///< point
+    glm::dvec3 direction{0.0}; ///< directional: where its light goes, unit length
+    double cutoff_angle = 20;  ///< spot: degrees from the axis, from where on it is dark
+    double beam_width = 15;    ///< spot: degrees up to which it is brightest, at most cutoff_angle
+    double fov = 52.2;         ///< projector: degrees along fov_axis
+    FovAxis fov_axis = FovAxis::x;       ///< projector
+    int shape = none;                    ///< area
     std::shared_ptr<const Image> bitmap; ///< envmap: latitude-longitude, at least 2 x 3 pixels
     bool raw = false;                    ///< envmap: u8 data are linear
-    double scale = 1;                    ///< envmap
-    glm::dmat4 to_world{1.0};            ///< envmap
+    double scale = 1;                    ///< envmap, projector
+    glm::dmat4 to_world{1.0};            ///< envmap, spot, projector
     SourceLocation where;
 };
 
-enum class SensorKind { perspective, thinlens };
-enum class FovAxis { x, y, diagonal, smaller, larger };
+enum class SensorKind { perspective, thinlens, orthographic };
 
-/// The camera looks along +z of its own space, +y up and +x to the left of the picture.
+/// The camera looks along +z of its own space, +y up and +x to the left of the picture. Rays of an
+/// orthographic one begin on z = 0, where the picture is two units wide.
 struct Sensor {
     SensorKind kind = SensorKind::perspective;
     glm::dmat4 to_world{1.0};
@@ -127,7 +155,9 @@ enum class PixelFormat { luminance, luminance_alpha, rgb, rgba, xyz, xyza };
 struct FilmSettings {
     int width = 768, height = 576;
     int crop_x = 0, crop_y = 0, crop_width = 0,
-        crop_height = 0; ///< resolved: never 0 after reading
+        crop_height = 0;        ///< resolved: never 0 after reading
+    bool sample_border = false; ///< samples lie outside of the crop window as well, as far as the
+                                ///< filter reaches
     ReconstructionFilter filter;
     PixelFormat pixel_format = PixelFormat::rgb;
     SourceLocation where;

@@ -74,6 +74,19 @@ void repair_values(Image &image, const std::string &path, const SourceLocation &
     say(negative, "negative, 0 instead");
 }
 
+Mesh read_mesh(MeshFormat format, const std::string &path, const MeshReadOptions &options,
+               const SourceLocation &where) {
+    switch (format) {
+    case MeshFormat::obj:
+        return read_obj_mesh(path, options, where);
+    case MeshFormat::ply:
+        return read_ply_mesh(path, options, where);
+    case MeshFormat::serialized:
+        break;
+    }
+    return read_serialized_mesh(path, options, where);
+}
+
 /// One of the ways to spell a path.
 std::string normal(const std::string &path) {
     return std::filesystem::path(path).lexically_normal().string();
@@ -111,13 +124,14 @@ std::shared_ptr<const Image> SceneFiles::image(const std::string &path, const So
 std::shared_ptr<const Mesh> SceneFiles::mesh(MeshFormat format, const std::string &path,
                                              const MeshReadOptions &options,
                                              const SourceLocation &where) {
-    std::shared_ptr<const Mesh> &known =
-        meshes_[{normal(path), format, options.face_normals, options.flip_tex_coords}];
+    std::shared_ptr<const Mesh> &known = meshes_[{normal(path), format, options.face_normals,
+                                                  options.flip_tex_coords, options.shape_index}];
     if (!known) {
         const auto mesh = std::make_shared<Mesh>();
-        reads_.add([mesh, format, path, options, where] {
-            *mesh = format == MeshFormat::obj ? read_obj_mesh(path, options, where)
-                                              : read_ply_mesh(path, options, where);
+        reads_.add([this, mesh, format, path, options, where] {
+            MeshReadOptions all = options;
+            all.attributes = attributes_;
+            *mesh = read_mesh(format, path, all, where);
         });
         known = mesh;
     }

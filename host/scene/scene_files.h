@@ -8,13 +8,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
 namespace clrender {
 
-enum class MeshFormat { obj, ply };
+enum class MeshFormat { obj, ply, serialized };
 
 struct ImageUse {
     bool raw = false;         ///< 16-bit values are linear, else they are decoded from sRGB
@@ -30,6 +31,9 @@ public:
     std::shared_ptr<const Mesh> mesh(MeshFormat format, const std::string &path,
                                      const MeshReadOptions &options, const SourceLocation &where);
 
+    /// Meshes are read with the attributes of this name.
+    void want_attribute(const std::string &name) { attributes_.insert(name); }
+
     /// Notes what has to hold of the files; `check` is run when they have been read.
     void then(std::function<void()> check);
 
@@ -43,9 +47,11 @@ private:
                           const ImageUse &use);
 
     FileReads reads_;
+    std::set<std::string> attributes_;
     std::vector<std::function<void()>> checks_;
     std::map<std::tuple<std::string, bool, bool, bool>, std::shared_ptr<const Image>> images_;
-    std::map<std::tuple<std::string, MeshFormat, bool, bool>, std::shared_ptr<const Mesh>> meshes_;
+    std::map<std::tuple<std::string, MeshFormat, bool, bool, int>, std::shared_ptr<const Mesh>>
+        meshes_;
 };
 
 } // namespace clrender

@@ -33,7 +33,31 @@ XmlFile::XmlFile(const std::string &path, const SourceLocation &referrer) : path
 }
 
 SourceLocation XmlFile::where(const pugi::xml_node &node) const {
-    return {path_, line_at(node.offset_debug())};
+    return {path_, line_at(offset_of(node))};
+}
+
+std::ptrdiff_t XmlFile::offset_of(const pugi::xml_node &node) const {
+    const auto noted = offsets_.find(node.internal_object());
+    return noted != offsets_.end() ? noted->second : node.offset_debug();
+}
+
+void XmlFile::rename(pugi::xml_node node, const std::string &name) {
+    offsets_[node.internal_object()] = offset_of(node);
+    node.set_name(name.c_str());
+}
+
+pugi::xml_node XmlFile::append(pugi::xml_node parent, const char *name,
+                               const pugi::xml_node &like) {
+    const pugi::xml_node added = parent.append_child(name);
+    offsets_[added.internal_object()] = offset_of(like);
+    return added;
+}
+
+pugi::xml_node XmlFile::prepend(pugi::xml_node parent, const char *name,
+                                const pugi::xml_node &like) {
+    const pugi::xml_node added = parent.prepend_child(name);
+    offsets_[added.internal_object()] = offset_of(like);
+    return added;
 }
 
 int XmlFile::line_at(std::ptrdiff_t offset) const {

@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace clrender {
@@ -29,8 +30,15 @@ public:
     /// The place of an element.
     [[nodiscard]] SourceLocation where(const pugi::xml_node &node) const;
 
+    /// Gives an element another name; it keeps its place.
+    void rename(pugi::xml_node node, const std::string &name);
+    /// A new element at the end of `parent`, or at its beginning, placed where `like` is.
+    pugi::xml_node append(pugi::xml_node parent, const char *name, const pugi::xml_node &like);
+    pugi::xml_node prepend(pugi::xml_node parent, const char *name, const pugi::xml_node &like);
+
 private:
     [[nodiscard]] int line_at(std::ptrdiff_t offset) const;
+    [[nodiscard]] std::ptrdiff_t offset_of(const pugi::xml_node &node) const;
     void read(const SourceLocation &referrer);
     void parse();
 
@@ -38,6 +46,8 @@ private:
     std::string text_;                     ///< parsed in place; must outlive the document
     std::vector<std::uint32_t> line_ends_; ///< max_xml_bytes fits
     pugi::xml_document document_;
+    /// Offsets of elements whose names are not the file's: pugixml knows those of others.
+    std::unordered_map<const void *, std::ptrdiff_t> offsets_;
 };
 
 } // namespace clrender

@@ -243,7 +243,11 @@ Checks check_environment(ProbeDevice &device) {
     MapErrors errors;
     Random random(30);
     for (const auto &[width, height] : {std::pair{2, 3}, std::pair{5, 4}, std::pair{16, 9},
-                                        std::pair{33, 17}, std::pair{128, 65}})
+                                        std::pair{33, 17}, std::pair{128, 65}}) {
+        // A simulated device, which is asked for few lookups, gets the smallest maps alone: the
+        // integral takes four lookups a texel.
+        if (device.count(1e6) < 10000 && width * height > 20)
+            continue;
         for (const Content content :
              {Content::even, Content::noise, Content::sun, Content::rows, Content::mostly_black}) {
             const FlatScene flat = map_scene(random, width, height, content);
@@ -252,13 +256,15 @@ Checks check_environment(ProbeDevice &device) {
             check_integral(device, flat, oracle, errors);
             check_samples(device, flat, oracle, errors);
         }
+    }
     return {
         {"env_eval", "error of radiance over that of the direction", errors.radiance.value(), 1},
         {"env_eval", "error of the density over its bound", errors.density.value(), 1},
         {"env_eval", "integral of the density, off 1 by", errors.integral.value(), 1e-3},
         {"env_sample", "density against env_eval's, over the error's bound",
          errors.sample_density.value(), 1},
-        {"env_sample", "chi-square against the density, 25 maps, deviations", errors.deviation, 4}};
+        {"env_sample", "chi-square against the density, all maps, deviations", errors.deviation,
+         4}};
 }
 
 } // namespace clrender::selftest

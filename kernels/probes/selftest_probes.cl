@@ -161,17 +161,23 @@ __kernel void probe_env_eval(PROBE_SCENE_PARAMETERS) {
 __kernel void probe_texture(PROBE_SCENE_PARAMETERS) {
     PROBE_SCENE;
     const uint_l texture = as_uint_l(to_int_l(probe_in(in, first, count, 3u, 2u)));
-    probe_out3(texture_apply(scene, texture, probe_in(in, first, count, 3u, 0u),
-                             probe_in(in, first, count, 3u, 1u), all_lanes(),
-                             v3_of(0.0f, 0.0f, 0.0f)),
+    Surface at;
+    at.u = probe_in(in, first, count, 3u, 0u);
+    at.v = probe_in(in, first, count, 3u, 1u);
+#if HAS_ATTRIBUTES
+    at.mesh_point = mesh_point_none();
+#endif
+    probe_out3(texture_apply(scene, texture, TEXTURE_AT(at), all_lanes(), v3_of(0.0f, 0.0f, 0.0f)),
                out, first, count, 3u, 0u);
 }
 
 /* in: a direction from the centre of shape 0. out: u and v there. */
 __kernel void probe_sphere_uv(PROBE_SCENE_PARAMETERS) {
     PROBE_SCENE;
+    vec3 axis[3];
+    sphere_axes(scene, int_of(0), axis);
     real u, v;
-    sphere_uv(scene, int_of(0), probe_in3(in, first, count, 3u, 0u), &u, &v);
+    sphere_uv(axis, probe_in3(in, first, count, 3u, 0u), &u, &v);
     probe_out(u, out, first, count, 2u, 0u);
     probe_out(v, out, first, count, 2u, 1u);
 }

@@ -91,9 +91,10 @@ enum {
 #define CLR_BSDF_TANGENTS 0x400u      /* the frame has to follow dp/du */
 #define CLR_BSDF_FLIPS_NORMALS 0x800u /* PerturbedNormals::flip_invalid */
 #define CLR_BSDF_SHADOWS_NORMALS 0x1000u
-#define CLR_BSDF_TRANSMITS 0x8000u /* a lobe that is no delta lies behind the surface */
-#define CLR_BSDF_NONLINEAR 0x4000u /* plastic whose hue changes with each reflection inside */
-#define CLR_BSDF_MIRRORED 0x2000u  /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_TRANSMITS 0x8000u     /* a lobe that is no delta lies behind the surface */
+#define CLR_BSDF_NONLINEAR 0x4000u     /* plastic whose hue changes with each reflection inside */
+#define CLR_BSDF_MIRRORED 0x2000u      /* shown by `twosided` on the back of the surface */
+#define CLR_BSDF_LETS_THROUGH 0x10000u /* a map of what lets light through */
 
 /* One side of a surface. `color` scales the reflection, `color2` the transmission (dielectric);
    a texture, where there is one, replaces the colour. Conductor: eta and k per channel.
@@ -121,11 +122,16 @@ CLR_STATIC_WORDS(ShapeFrame, 9);
 #define CLR_LIGHT_SPHERE 1u
 #define CLR_LIGHT_PLANAR 2u
 #define CLR_LIGHT_TRIANGLE 3u
+#define CLR_LIGHT_SPOT 4u
+#define CLR_LIGHT_PROJECTOR 5u
+#define CLR_LIGHT_DIRECTIONAL 6u
 
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
-   light triangles; bit k of `trail` is the child taken at level k of the light tree. `position` is
-   that of a point, the centre of a sphere, or the middle of the only light. Point: radiance holds
-   the intensity, times the square of the unit of length. */
+   light triangles or of the light beams; bit k of `trail` is the child taken at level k of the
+   light tree. `position` is that of a point, spot or projector, the centre of a sphere, the middle
+   of the only light, or of a directional one the unit vector towards it. Point and spot: radiance
+   holds the intensity, times the square of the unit of length; projector: pi times the irradiance
+   at distance 1, or pi where a texture tells it, times the same; directional: the irradiance. */
 typedef struct {
     clr_real position[3];
     clr_word kind;
@@ -136,8 +142,9 @@ typedef struct {
     clr_real area;   /* of a planar or a triangle */
     clr_real radius; /* of a sphere */
     clr_word shape;  /* of a sphere */
+    clr_word pad[3];
 } Light;
-CLR_STATIC_WORDS(Light, 13);
+CLR_STATIC_WORDS(Light, 16);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
@@ -163,20 +170,39 @@ typedef struct {
     clr_real v0[3];
     clr_word smooth;
     clr_real e1[3];
-    clr_real pad0;
+    clr_word triangle; /* its number among the scene's */
     clr_real e2[3];
-    clr_real pad1;
     clr_real normals[3][3];
     clr_real uvs[3][2];
-    clr_real pad2;
+    clr_real pad1[2];
 } LightTriangle;
 CLR_STATIC_WORDS(LightTriangle, 28);
+
+/* What a spot or a projector lights. For a vector w from it to a point, z = axis . w is the depth,
+   and its texture is looked up at (u, v) = (1/2 + to_u . w / z, 1/2 + to_v . w / z). A spot is dark
+   from the angle `cutoff` (turns) on and grows by `ramp` a turn inwards, up to its full intensity;
+   `reach` is what takes (to_u . w, to_v . w) to the units of z. A projector's light goes through
+   the unit square, and falls with z^2 times front . w / |w|. */
+typedef struct {
+    clr_real to_u[3];
+    clr_real cutoff;
+    clr_real to_v[3];
+    clr_real ramp;
+    clr_real axis[3];
+    clr_real reach;
+    clr_real front[3];
+    clr_real pad;
+} LightBeam;
+CLR_STATIC_WORDS(LightBeam, 16);
 
 /* A node of the light tree: bounds of both children. Of each: the sphere around its lights and
    their summed intensity (the largest radiant intensity in any direction, luminance); the index of
    the child's node, or CLR_LIGHT_LEAF plus the light's; and the cone that holds the normals of its
-   lights, by its axis and the cosine and sine of its half angle. */
+   lights, by its axis and the cosine and sine of its half angle. The fourth number of the axis is 0
+   where no light leaves the cone, else 1. CLR_LIGHT_DISTANT is added to the index of children that
+   are infinitely far away: their points are directions, their intensity is irradiance. */
 #define CLR_LIGHT_LEAF 0x80000000u
+#define CLR_LIGHT_DISTANT 0x40000000u
 #define CLR_LIGHT_TREE_LEVELS 32
 typedef struct {
     clr_real center[3];
@@ -196,13 +222,17 @@ CLR_STATIC_WORDS(LightNode, 24);
 #define CLR_TEXTURE_BITMAP_U8 0u
 #define CLR_TEXTURE_BITMAP_F32 1u
 #define CLR_TEXTURE_CHECKERBOARD 2u
+#define CLR_TEXTURE_ATTRIBUTE 3u
 
 #define CLR_WRAP_REPEAT 0u
 #define CLR_WRAP_MIRROR 1u
 #define CLR_WRAP_CLAMP 2u
 
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
-   bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. */
+   bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. An
+   attribute of meshes is number `offset` of `width`, constant over a face where it is `nearest`,
+   and scaled by color0[0]: its triple of vertex or triangle i of shape s is number
+   attribute_places[s * width + offset] + i, modulo 2^32. */
 #define CLR_DECODE_LINEAR 0u
 #define CLR_DECODE_SRGB 1u
 #define CLR_DECODE_HALF 2u /* added: the same, rounded to half precision */

@@ -7,6 +7,7 @@
 #include "memory_limit.h"
 #include "program.h"
 #include "scene/load_scene.h"
+#include "scene/mesh_io.h"
 #include "scene/polygon.h"
 #include "verify/reference.h"
 
@@ -26,6 +27,12 @@ constexpr std::uint64_t memory_for_inputs = std::uint64_t{128} << 20;
 void load_and_flatten(const std::string &path) {
     FlatScene flat = flatten(load_scene(path));
     build_hierarchy(flat);
+}
+
+/// Both ways to a mesh: from the beginning, and by the dictionary.
+void load_serialized(const std::string &path) {
+    (void)read_serialized_mesh(path, {.shape_index = 1, .attributes = {"vertex_color"}});
+    (void)read_serialized_mesh(path, {});
 }
 
 void load_picture(const std::string &path) {
@@ -83,12 +90,13 @@ const test::TempFolder &folder() {
 
 const std::vector<Reader> &readers() {
     static const std::vector<Reader> all = {
-        {"xml", ".xml", load_and_flatten},     {"obj", ".obj", load_and_flatten},
-        {"ply", ".ply", load_and_flatten},     {"png", ".png", load_picture},
-        {"jpeg", ".jpg", load_picture},        {"tga", ".tga", load_picture},
-        {"bmp", ".bmp", load_picture},         {"hdr", ".hdr", load_picture},
-        {"exr", ".exr", load_picture},         {"pfm", ".pfm", load_picture},
-        {"reference", ".exr", load_reference}, {"polygon", ".bin", cut_polygon}};
+        {"xml", ".xml", load_and_flatten}, {"obj", ".obj", load_and_flatten},
+        {"ply", ".ply", load_and_flatten}, {"serialized", ".serialized", load_serialized},
+        {"png", ".png", load_picture},     {"jpeg", ".jpg", load_picture},
+        {"tga", ".tga", load_picture},     {"bmp", ".bmp", load_picture},
+        {"hdr", ".hdr", load_picture},     {"exr", ".exr", load_picture},
+        {"pfm", ".pfm", load_picture},     {"reference", ".exr", load_reference},
+        {"polygon", ".bin", cut_polygon}};
     return all;
 }
 

@@ -48,7 +48,7 @@ TEST_CASE("another word is suggested only for a misspelling", "[messages]") {
             has(error_of_text("<shape type='" + std::string(type) + "'/>"), "did you mean"));
     CHECK(has(error_of_text("<sensor type='perspective'><transform name='toWorld'/></sensor>"),
               "did you mean \"to_world\"?"));
-    CHECK_FALSE(has(error_of_text("<integrator type='volpath'/>"), "did you mean"));
+    CHECK_FALSE(has(error_of_text("<integrator type='volume'/>"), "did you mean"));
     CHECK_FALSE(has(error_of_text("<emitter type='spot'/>"), "did you mean"));
 }
 
@@ -97,15 +97,40 @@ TEST_CASE("a scene without light is told once", "[messages]") {
 
 TEST_CASE("the older name of an option is treated like the newer one", "[messages]") {
     for (const std::string &name :
-         {std::string("sample_border"), std::string("high_quality_edges")}) {
-        const auto film = [&](const char *value) {
-            return "<sensor type='perspective'><film type='hdrfilm'><boolean name='" + name +
-                   "' value='" + value + "'/></film></sensor>";
-        };
-        CHECK(has(error_of_text(film("true")),
-                  "\"" + name + "\" is not supported, expected \"false\""));
-        CHECK(error_of_text(film("false")).empty());
-    }
+         {std::string("sample_border"), std::string("high_quality_edges")})
+        for (const bool value : {true, false}) {
+            const Scene scene = test::load_text(
+                "<sensor type='perspective'><film type='hdrfilm'><boolean name='" + name +
+                "' value='" + (value ? "true" : "false") + "'/></film></sensor>");
+            CHECK(scene.film.sample_border == value);
+        }
+}
+
+TEST_CASE("what is not built is named with the nearest thing that is", "[messages]") {
+    const auto nearest = [](const std::string &tag, const std::string &type,
+                            const std::string &inside = "") {
+        const std::string error =
+            error_of_text("\n<" + tag + " type='" + type + "'>" + inside + "</" + tag + ">");
+        CHECK(error.rfind("3: " + tag + " \"" + type + "\" is not supported, the nearest", 0) == 0);
+        CHECK(count(error, "\n") == 0);
+    };
+    for (const char *type :
+         {"sdfgrid", "bsplinecurve", "linearcurve", "ellipsoids", "hair", "heightfield"})
+        nearest("shape", type);
+    for (const char *type : {"radiancemeter", "irradiancemeter", "distant", "spherical",
+                             "perspective_rdist", "telecentric"})
+        nearest("sensor", type);
+    for (const char *type : {"stokes", "ao", "field", "vpl"})
+        nearest("integrator", type);
+    nearest("integrator", "stokes", "<integrator type='path'/>");
+
+    const std::string medium = "<medium type='homogeneous' name='interior'/>";
+    CHECK(has(error_of_text("<shape type='sphere'>\n" + medium + "</shape>"),
+              "3: medium \"homogeneous\" named \"interior\" in shape \"sphere\" is not supported, "
+              "the nearest that is: "));
+    CHECK(has(error_of_text("<sensor type='perspective'>\n" + medium + "</sensor>"),
+              "3: medium \"homogeneous\""));
+    CHECK(error_of_text("<medium type='homogeneous' id='unused'/>").empty());
 }
 
 TEST_CASE("all faults of a scene can be asked for", "[messages]") {
@@ -118,9 +143,9 @@ TEST_CASE("all faults of a scene can be asked for", "[messages]") {
 <shape type="disk"><ref id="shared"/></shape>
 <shape type="ply"><string name="filename" value="bad.ply"/></shape>
 <shape type="obj"><string name="filename" value="bad.obj"/></shape>
-<emitter type="spot"/>
+<emitter type="collimated"/>
 <sensor type="perspective"><float name="fov" value="200"/></sensor>
-<integrator type="volpath"/>
+<integrator type="stokes"/>
 </scene>
 )");
     (void)folder.file("bad.ply", "no ply");
@@ -139,13 +164,51 @@ TEST_CASE("all faults of a scene can be asked for", "[messages]") {
     CHECK(count(all, "\n") == 7);
 }
 
-TEST_CASE("a version before 2 is told for what it is", "[messages]") {
+TEST_CASE("all faults of one object, and of the document itself, are told", "[messages]") {
     const test::ScratchFolder folder;
-    for (const char *version : {"0.6.0", "1.0.0"}) {
-        const std::string path =
-            folder.file("s.xml", std::string("<scene version=\"") + version + "\"/>");
-        const std::string error = test::error_of([&] { test::load(path); });
-        CHECK(has(error, std::string("version \"") + version + "\" is older than Mitsuba 2"));
-        CHECK_FALSE(has(error, "0.6,"));
+    const std::string path = folder.file("s.xml", R"(<scene version="3.0.0">
+<shape type="sphere"><float name="radius" value="many"/>
+<float name="a" value="1"/>
+<float name="b" value="1"/>
+<ref id="nobody"/>
+<bsdf type="phong"/></shape>
+<shape type="hair">
+<bsdf type="ward"/>
+<emitter type="spot"/></shape>
+<lamp type="bulb"/>
+<sensor type="fisheye"><film type="specfilm"/>
+<sampler type="any"><integer name="sample_count" value="0"/></sampler></sensor>
+<shape type="disk"><bsdf type="twosided"><bsdf type="diffuse">
+<texture name="reflectance" type="wood"/></bsdf>
+</bsdf><bsdf type="conductor"><string name="material" value="mithril"/></bsdf></shape>
+</scene>
+)");
+    LoadOptions options;
+    const std::string first = test::error_of([&] { load_scene(path, options); });
+    CHECK(count(first, "\n") == 0);
+    CHECK(has(first, "s.xml:2: \"radius\" is \"many\""));
+    options.all_faults = true;
+    const std::string all = test::error_of([&] { load_scene(path, options); });
+    CAPTURE(all);
+    for (const char *part :
+         {"s.xml:2: ", "s.xml:3: ", "s.xml:4: ", "s.xml:5: ", "s.xml:6: ", "s.xml:7: ", "s.xml:8: ",
+          "s.xml:9: ", "s.xml:10: ", "s.xml:11: sensor", "s.xml:11: film",
+          "s.xml:12: ", "s.xml:14: ", "s.xml:15: shape", "s.xml:15: bsdf"}) {
+        CAPTURE(part);
+        CHECK(count(all, part) == 1);
+    }
+    CHECK(count(all, "\n") == 14);
+}
+
+TEST_CASE("what does not change the picture is told where all is asked for", "[messages]") {
+    const test::ScratchFolder folder;
+    const std::string path = folder.file("s.xml", "<scene version='3.0.0'>\n<integrator "
+                                                  "type='path'>\n<integer name='block_size' "
+                                                  "value='8'/></integrator></scene>");
+    for (const bool all : {false, true}) {
+        LoadOptions options;
+        options.all_faults = all;
+        const std::string said = test::stderr_of([&] { load_scene(path, options); });
+        CHECK(has(said, "s.xml:3: \"block_size\" of integrator \"path\"") == all);
     }
 }

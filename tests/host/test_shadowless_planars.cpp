@@ -122,6 +122,17 @@ TEST_CASE("a wall between rooms, and walls with light outside, cast shadows", "[
           std::vector<bool>{true, true, true, true, true, false, //
                             true, true, true, true, false, true});
     CHECK(of(room("") + R"(<emitter type="constant"/>)") == walls({}, {}));
+    for (const char *kind : {"spot", "projector"})
+        for (const double x : {0.9, 1.1})
+            CHECK(of(room("") + fmt::format(R"(<emitter type="{}"><rgb name="{}" value="1"/>
+                                    <transform name="to_world"><translate x="{}"/></transform>
+                                    </emitter>)",
+                                            kind, kind[0] == 's' ? "intensity" : "irradiance",
+                                            x)) == (x < 1 ? walls({}, {}) : walls({5}, {})));
+}
+
+TEST_CASE("light from one direction has to pass every wall", "[shadowless]") {
+    CHECK(of(room("") + R"(<emitter type="directional"/>)") == std::vector<bool>(6, false));
 }
 
 TEST_CASE("of several lights each may be in the way of another", "[shadowless]") {

@@ -3,6 +3,7 @@
 
 import pathlib
 import struct
+import zlib
 
 import mitsuba as mi
 import numpy as np
@@ -161,6 +162,46 @@ def welded(points, triangles):
     return points[first], index.reshape(-1)[triangles]
 
 
+def write_attributes(name, points, triangles, normals):
+    """A mesh with a colour and two numbers by vertex, and a colour and a number by face."""
+    x, y, z = points.T
+    middle = points[triangles].mean(1)
+    of_vertices = [("x y z", points), ("nx ny nz", normals),
+                   ("red green blue", 0.5 + 0.4 * np.stack([x, np.sin(3 * y), -z], -1)),
+                   ("height_0", 0.5 + 0.3 * np.sin(2 * x + y)[:, None]),
+                   ("tint_r tint_g tint_b", 0.6 + 0.3 * np.stack([np.cos(4 * z), x * y, y], -1))]
+    of_faces = [("r g b", 0.5 + 0.35 * np.sin(3 * middle)),
+                ("rough_x", 0.3 + 0.2 * np.sin(5 * middle[:, :1]))]
+    header = ["ply", "format ascii 1.0", "element vertex %d" % len(points)]
+    header += ["property float " + n for names, _ in of_vertices for n in names.split()]
+    header += ["element face %d" % len(triangles), "property list uchar int vertex_indices"]
+    header += ["property float " + n for names, _ in of_faces for n in names.split()]
+    rows = np.concatenate([values for _, values in of_vertices], 1)
+    values = np.concatenate([values for _, values in of_faces], 1)
+    lines = header + ["end_header"] + [" ".join("%.4g" % v for v in row) for row in rows]
+    lines += ["3 %d %d %d " % tuple(t) + " ".join("%.4g" % v for v in row)
+              for t, row in zip(triangles, values)]
+    (DATA / name).write_text("\n".join(lines) + "\n")
+
+
+def serialized(points, triangles, precision, version, normals=None, uvs=None, colors=None):
+    """A mesh as it stands in a .serialized file."""
+    data = [values for values in (points, normals, uvs, colors) if values is not None]
+    flags = (normals is not None) | (uvs is not None) << 1 | (colors is not None) << 3
+    flags |= 0x2000 if precision == "<f8" else 0x1000
+    body = struct.pack("<I", flags) + (b"mesh\0" if version == 4 else b"")
+    body += struct.pack("<QQ", len(points), len(triangles))
+    body += b"".join(values.astype(precision).tobytes() for values in data)
+    body += triangles.astype("<u4").tobytes()
+    return struct.pack("<HH", 0x041C, version) + zlib.compress(body, 9)
+
+
+def write_serialized(name, version, meshes):
+    places = np.cumsum([0] + [len(mesh) for mesh in meshes[:-1]])
+    (DATA / name).write_bytes(b"".join(meshes) + places.astype("<u8" if version == 4 else "<u4").tobytes() +
+                              struct.pack("<I", len(meshes)))
+
+
 def write_meshes():
     points, normals, uvs, triangles = blob()
     bare, bare_triangles = welded(points, triangles)
@@ -171,6 +212,14 @@ def write_meshes():
     write_ply("blob_big.ply", "binary_big_endian", points, triangles, normals, uvs)
     points, normals, uvs, triangles = blob(4, 6)
     write_obj("gem.obj", points, triangles, normals, uvs)
+    write_attributes("gem_attributes.ply", points, triangles, normals)
+    bare, bare_triangles = welded(points, triangles)
+    write_serialized("gems.serialized", 4, [
+        serialized(bare, bare_triangles, "<f4", 4),
+        serialized(points, triangles, "<f8", 4, normals, uvs, 0.5 + 0.4 * np.sin(3 * points))])
+    write_serialized("gems_3.serialized", 3, [
+        serialized(points, triangles, "<f4", 3, normals, uvs),
+        serialized(bare, bare_triangles, "<f8", 3)])
     bare, bare_triangles = welded(points, triangles)
     write_ply("gem_little.ply", "binary_little_endian", bare, bare_triangles)
 

@@ -1,0 +1,100 @@
+/// Integrators that are rendered by path tracing, and those around another one.
+
+#include "mitsuba_text_scene.h"
+#include "stderr_of.h"
+
+#include <catch2/catch.hpp>
+
+using namespace clrender;
+
+namespace {
+
+bool has(const std::string &text, const std::string &part) {
+    return text.find(part) != std::string::npos;
+}
+
+struct Loaded {
+    Integrator integrator;
+    std::string said;
+};
+
+Loaded load(const std::string &content) {
+    Loaded loaded;
+    loaded.said = test::stderr_of([&] { loaded.integrator = test::load_text(content).integrator; });
+    return loaded;
+}
+
+std::string integrator(const std::string &type, const std::string &content = "") {
+    return "<integrator type='" + type + "'>" + content + "</integrator>";
+}
+
+const char *const point_light = "<emitter type='point'/>";
+const char *const mirror = "<shape type='sphere'><bsdf type='conductor'/></shape>";
+const char *const leaf =
+    "<shape type='disk'><bsdf type='mask'><bsdf type='diffuse'/></bsdf></shape>";
+
+} // namespace
+
+TEST_CASE("integrators of the same light are path tracing", "[integrators]") {
+    for (const char *type :
+         {"volpath", "volpathmis", "volpath_simple", "bdpt", "sppm", "ppm", "vcm", "ptracer",
+          "photonmapper", "pssmlt", "mlt", "erpt", "guided_path"}) {
+        CAPTURE(type);
+        const Loaded loaded = load(integrator(
+            type, "<integer name='max_depth' value='9'/><integer name='rr_depth' value='7'/>"
+                  "<float name='initial_radius' value='.1'/><boolean name='light_image' "
+                  "value='true'/><integer name='photon_count' value='1000'/>"));
+        CHECK(loaded.integrator.kind == IntegratorKind::path);
+        CHECK(loaded.integrator.max_depth == 9);
+        CHECK(loaded.integrator.rr_depth == 7);
+        CHECK(has(loaded.said, "scene.xml:2: warning: integrator \"" + std::string(type) +
+                                   "\" is rendered by path tracing"));
+        CHECK(load(integrator(type)).integrator.max_depth == -1);
+    }
+
+    // Mitsuba's integrators for derivatives end after 6 segments where no depth is stated.
+    for (const char *type : {"prb", "prb_basic", "prb_reparam", "prb_projective", "prbvolpath"}) {
+        CHECK(load(integrator(type)).integrator.max_depth == 6);
+        CHECK(
+            load(integrator(type, "<integer name='max_depth' value='-1'/>")).integrator.max_depth ==
+            -1);
+    }
+    CHECK(load(integrator("direct_projective")).integrator.kind == IntegratorKind::direct);
+    CHECK(has(test::error_of_text(integrator("bdpt", "\n<integer name='max_depth' value='-2'/>")),
+              "3: integrator \"bdpt\": \"max_depth\""));
+}
+
+TEST_CASE("light that path tracing does not find is warned of", "[integrators]") {
+    const char *const caustics = "(caustics)";
+    CHECK(has(load(std::string(point_light) + mirror + integrator("bdpt")).said, caustics));
+    CHECK_FALSE(has(load(std::string(point_light) + mirror + integrator("path")).said, caustics));
+    CHECK_FALSE(has(load(std::string(point_light) + leaf + integrator("bdpt")).said, caustics));
+    CHECK_FALSE(
+        has(load(std::string(mirror) + "<emitter type='constant'/>" + integrator("sppm")).said,
+            caustics));
+
+    const char *const counts = "counts as a segment";
+    const char *const shines = "do not shine through";
+    const std::string deep = "<integer name='max_depth' value='5'/>";
+    CHECK(has(load(leaf + integrator("volpath", deep)).said, counts));
+    CHECK_FALSE(has(load(leaf + integrator("volpath")).said, counts));
+    CHECK_FALSE(has(load(mirror + integrator("volpath", deep)).said, counts));
+    CHECK(has(load(std::string(leaf) + point_light + integrator("volpath")).said, shines));
+    CHECK_FALSE(has(load(leaf + integrator("volpath")).said, shines));
+}
+
+TEST_CASE("layers around a picture", "[integrators]") {
+    const std::string path = integrator("path", "<integer name='max_depth' value='4'/>");
+    const Loaded aov =
+        load(integrator("aov", "<string name='aovs' value='dd.y:depth,nn:sh_normal'/>" + path));
+    CHECK(aov.integrator.max_depth == 4);
+    CHECK(has(aov.said, "scene.xml:2: warning: integrator \"aov\": its layers "
+                        "\"dd.y:depth,nn:sh_normal\" are not written"));
+    CHECK(load(integrator("moment", path)).integrator.max_depth == 4);
+    const Loaded two = load(integrator("aov", path + "\n" + integrator("direct")));
+    CHECK(two.integrator.max_depth == 4);
+    CHECK(has(two.said, "scene.xml:3: warning: integrator \"aov\" has 2 nested integrators"));
+    CHECK(has(test::error_of_text(integrator("aov")), "2: integrator \"aov\" has no nested"));
+    CHECK(has(test::error_of_text("<integrator type='aov' id='a'><ref id='a'/></integrator>"),
+              "is nested, expected a path integrator inside"));
+}
