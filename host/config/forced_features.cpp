@@ -73,8 +73,8 @@ const std::map<std::string, Setting> &settings() {
 const std::multimap<std::string, std::string> &dependents() {
     static const std::multimap<std::string, std::string> table = {
         {"HAS_UVS", "HAS_TANGENTS"},
-        {"HAS_TRIANGLES", "HAS_ATTRIBUTES"},
         {"HAS_TRIANGLES", "HAS_INSTANCES"},
+        {"HAS_TRIANGLES", "HAS_ATTRIBUTES"},
         {"HAS_TANGENTS", "HAS_BUMPMAP"},
         {"HAS_TANGENTS", "HAS_NORMALMAP"},
         {"HAS_GGX", "HAS_ROUGHCONDUCTOR"},

@@ -40,16 +40,15 @@ void append_values(const MeshAttribute &attribute, const PlacedMesh &placed, Fla
 } // namespace
 
 void number_attributes(Flattening &work) {
-    const auto take = [&](const Shape &shape) {
-        for (const int texture : shape.attribute_textures)
-            work.attribute_index.try_emplace(texture_of(work, texture).attribute,
-                                             static_cast<uint>(work.attribute_index.size()));
+    const auto take = [&](const std::vector<Shape> &shapes) {
+        for (const Shape &shape : shapes)
+            for (const int texture : shape.attribute_textures)
+                work.attribute_index.try_emplace(texture_of(work, texture).attribute,
+                                                 static_cast<uint>(work.attribute_index.size()));
     };
-    for (const Shape &shape : work.scene.shapes)
-        take(shape);
+    take(work.scene.shapes);
     for (const ShapeGroup &group : work.scene.groups)
-        for (const Shape &shape : group.shapes)
-            take(shape);
+        take(group.shapes);
 }
 
 void append_attributes(const Shape &shape, const PlacedMesh &placed, Flattening &work) {

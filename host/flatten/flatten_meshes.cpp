@@ -137,7 +137,10 @@ void append_mesh(const Shape &shape, const Mesh &mesh, const Placement &placemen
 } // namespace
 
 void append_triangles(const Shape &shape, const Placement &placement, Flattening &work) {
-    const VertexData wanted{work.vertex_normals, work.needs_uvs(), !work.attribute_index.empty()};
+    VertexData wanted;
+    wanted.normals = work.vertex_normals;
+    wanted.uvs = work.needs_uvs();
+    wanted.attributes = !work.attribute_index.empty();
     const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
     if (shape.mesh)
         append_mesh(shape, *shape.mesh, placement, wanted, work);

@@ -81,8 +81,12 @@ void SceneReader::warn_of_missing(Properties &root) const {
 void SceneReader::read_shapes(Properties &root) {
     std::set<int> seen; // a <ref> to a shape of the scene adds nothing
     for (const Child *child : root.children("shape"))
-        if (seen.insert(child->object).second && !attempt([&] { read_shape(child->object); }))
+        if (seen.insert(child->object).second && !attempt([&] { read_shape(child->object); })) {
+            // The files of what failed belong to no shape.
+            while (!shapes_from_files_.empty() && shapes_from_files_.back() >= scene_.shapes.size())
+                shapes_from_files_.pop_back();
             check_children(child->object);
+        }
 }
 
 void SceneReader::read_scene_emitters(Properties &root) {

@@ -83,7 +83,6 @@ struct Shape {
     SourceLocation where;
 };
 
-enum class FovAxis { x, y, diagonal, smaller, larger };
 /// Shapes that are shown by instances alone, as often as there are: rectangles and meshes, placed
 /// in the group's own coordinates. None emits.
 struct ShapeGroup {
@@ -96,6 +95,8 @@ struct ShapeInstance {
     int group = none; ///< index
     glm::dmat4x3 to_world{1.0};
 };
+
+enum class FovAxis { x, y, diagonal, smaller, larger };
 
 enum class EmitterKind { point, area, constant, envmap, spot, directional, projector };
 
