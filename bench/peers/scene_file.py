@@ -1,8 +1,9 @@
 """Reads the Mitsuba XML of the benchmark's scenes for the peers that cannot.
 
 Only what bench/make_scenes.py writes: defaults, references, a perspective camera, rectangles,
-spheres and binary PLY meshes of triangles, diffuse (also with a bitmap), mirror and glass, area
-lights, an even sky or an environment map. Anything else is a ValueError, never left out.
+spheres, binary PLY meshes of triangles and instances of groups of them, diffuse (also with a
+bitmap), mirror and glass, area lights, an even sky or an environment map. Anything else is a
+ValueError, never left out.
 """
 
 import dataclasses
@@ -102,6 +103,7 @@ class _Reader:
         self.values = {e.get("name"): e.get("value") for e in self.root.iter("default")}
         self.values.update({name: str(value) for name, value in overrides.items()})
         self.named = {e.get("id"): e for e in self.root.iter("bsdf")}
+        self.groups = {}
 
     def text(self, element, attribute="value"):
         text = element.get(attribute)
@@ -188,6 +190,14 @@ class _Reader:
             raise ValueError("a mesh that emits light")
         return shape
 
+    def instance(self, element):
+        """The shapes of a group, sharing its meshes, where the instance puts them."""
+        matrix = self.transform(element.find("transform"))
+        shapes = self.groups[element.find("ref").get("id")]
+        if any(shape.kind == "sphere" for shape in shapes):
+            raise ValueError("a sphere in a group")
+        return [dataclasses.replace(shape, to_world=matrix @ shape.to_world) for shape in shapes]
+
     def scene(self):
         scene = Scene()
         for element in self.root:
@@ -202,6 +212,10 @@ class _Reader:
                 scene.fov = self.number(element, "fov")
                 scene.width, scene.height = (
                     int(self.number(element.find("film"), name)) for name in ("width", "height"))
+            elif element.tag == "shape" and kind == "shapegroup":
+                self.groups[element.get("id")] = [self.shape(e) for e in element.findall("shape")]
+            elif element.tag == "shape" and kind == "instance":
+                scene.shapes += self.instance(element)
             elif element.tag == "shape":
                 scene.shapes.append(self.shape(element))
             elif element.tag == "emitter" and kind == "constant":
