@@ -36,7 +36,8 @@ void fill_parameter_pool(const std::vector<PackedBsdf> &packed, Flattening &work
     std::size_t most = 0;
     for (const PackedBsdf &bsdf : packed)
         most = std::max(most, bsdf.parameters.size());
-    // A forced feature needs room for the parameters of every kind. Records of the device hold two parameters each.
+    // A forced feature needs room for the parameters of every kind. Records of the device hold two
+    // parameters each.
     if (work.wants("BSDF_PARAMETERS"))
         most = CLR_MOST_BSDF_PARAMETERS;
     most += most % 2;
