@@ -267,7 +267,8 @@ Mesh extract(const Mesh &mesh, const std::vector<std::uint32_t> &selected,
                     part.uvs.push_back(mesh.uvs[v]);
                 for (std::size_t a = 0; a < mesh.attributes.size(); ++a)
                     for (std::size_t c = 0; c < 3; ++c)
-                        part.attributes[a].values.push_back(mesh.attributes[a].values[3 * v + c]);
+                        part.attributes[a].values.push_back(
+                            mesh.attributes[a].values[std::size_t{3} * v + c]);
             }
             v = id;
         }
