@@ -432,6 +432,8 @@ TEST_CASE("a tree is sound, and the same on one thread and on all") {
     for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
         for (int slot = 0; slot < BVH_WIDTH; ++slot) {
             const uint child = bvh.nodes[i].child[slot];
+            if (child == BVH_NO_CHILD)
+                continue;
             if (bvh_child_kind(child) == BVH_CHILD_INNER) {
                 REQUIRE(bvh.nodes.at(bvh_child_index(child)).parent == i);
             } else if (bvh_child_kind(child) == BVH_CHILD_TRIANGLES) {
