@@ -67,6 +67,8 @@ std::string summary(const RenderResult &result, const RunTimes &times,
     for (const std::string &path : outputs)
         files += (files.empty() ? "" : ", ") + path;
     const double pixels = static_cast<double>(s.width) * s.height;
+    // The paths include those of a border around the picture.
+    const double samples = std::min(s.paths / pixels, static_cast<double>(s.spp));
     const std::string gaps =
         result.gaps == 0 ? ""
                          : fmt::format("; {:.3g}% of the pixels have no sample yet and show their "
@@ -77,7 +79,7 @@ std::string summary(const RenderResult &result, const RunTimes &times,
                        files.empty()        ? "rendered"
                        : result.interrupted ? "interrupted; the picture so far is in "
                                             : "wrote ",
-                       files, s.width, s.height, s.paths / pixels, s.seconds_render,
+                       files, s.width, s.height, samples, s.seconds_render,
                        per_second(s.paths, s.seconds_render) * 1e-6, s.device, s.lanes, times.total,
                        gaps);
 }

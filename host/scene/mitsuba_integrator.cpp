@@ -95,7 +95,7 @@ void SceneReader::read_integrator(int object) {
         read_layers(properties);
     } else if (type == "direct_projective" || type == "direct_reparam") {
         read_direct(properties, integrator);
-        properties.ignore_everything();
+        properties.ignore_rest();
         log::warn(properties.where(), properties.description() + " is rendered as \"direct\"");
     } else if (const SameLight *other = same_light_as_path(type)) {
         read_other_integrator(properties, *other);
@@ -113,7 +113,7 @@ void SceneReader::read_other_integrator(Properties &properties, const SameLight 
     read_path(properties, integrator);
 
     // What else it states tells how the light is found, not how much there is.
-    properties.ignore_everything();
+    properties.ignore_rest();
     log::warn(properties.where(), properties.description() +
                                       " is rendered by path tracing, which estimates the same "
                                       "light");

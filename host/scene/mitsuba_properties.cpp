@@ -151,20 +151,28 @@ std::string Properties::file(const std::string &name) {
 }
 
 void Properties::ignore(const std::vector<std::string> &names) {
-    for (const std::string &name : names) {
-        if (find(name) == nullptr)
-            continue;
-        const std::string text = where(name).str() + ": " + in_quotes(name) + " of " +
-                                 description() + " does not change the picture";
-        if (document_.all_faults)
-            log::info(text);
-        else
-            log::detail(text);
-    }
+    for (const std::string &name : names)
+        if (find(name) != nullptr)
+            tell_ignored(name);
 }
 
-void Properties::ignore_everything() {
-    std::fill(used_properties_.begin(), used_properties_.end(), true);
+void Properties::tell_ignored(const std::string &name) const {
+    const std::string text = where(name).str() + ": " + in_quotes(name) + " of " + description() +
+                             " does not change the picture";
+    if (document_.all_faults)
+        log::info(text);
+    else
+        log::detail(text);
+}
+
+void Properties::ignore_rest() {
+    for (std::size_t i = 0; i < used_properties_.size(); ++i) {
+        const Property &property = object_.properties[i];
+        if (used_properties_[i] || is_misspelt(property.name, known_))
+            continue;
+        used_properties_[i] = true;
+        tell_ignored(property.name);
+    }
     std::fill(used_children_.begin(), used_children_.end(), true);
 }
 

@@ -57,7 +57,9 @@ public:
 
     /// Accepts values that cannot change the picture; told of where all faults are asked for.
     void ignore(const std::vector<std::string> &names);
-    void ignore_everything();
+    /// Accepts all that has not been asked for likewise, but for what is probably a known name
+    /// written wrong.
+    void ignore_rest();
 
     /// Throws InputError if there is a value or child that nobody asked for; with a line for each
     /// if all faults are asked for.
@@ -69,6 +71,7 @@ public:
 private:
     [[nodiscard]] std::string fault_of(const Child &child,
                                        const std::vector<std::string> &known) const;
+    void tell_ignored(const std::string &name) const;
     template <typename T> const T *get(const std::string &name, const char *expected);
 
     const Document &document_;

@@ -127,7 +127,7 @@ void SceneReader::read_sampler(int object) {
     Properties properties(document_, object);
     scene_.sample_count = static_cast<int>(
         properties.integer("sample_count", scene_.sample_count, 1, max_sample_count));
-    properties.ignore_everything();
+    properties.ignore_rest();
     properties.finish();
 }
 

@@ -120,6 +120,10 @@ std::string expected_one_of(std::string_view name, const std::vector<std::string
     return result;
 }
 
+bool is_misspelt(std::string_view name, const std::vector<std::string> &candidates) {
+    return nearest(name, candidates).has_value();
+}
+
 std::vector<std::string_view> split_list(std::string_view text) {
     std::vector<std::string_view> parts;
     const std::string_view separators = " ,\t\r\n";

@@ -16,6 +16,9 @@ std::string in_quotes(std::string_view text);
 /// "expected one of: a, b, c", with the candidate that `name` probably means in front.
 std::string expected_one_of(std::string_view name, const std::vector<std::string> &candidates);
 
+/// Whether `name` is probably one of the candidates, written wrong.
+bool is_misspelt(std::string_view name, const std::vector<std::string> &candidates);
+
 /// Parts of a list separated by spaces and commas.
 std::vector<std::string_view> split_list(std::string_view text);
 

@@ -13,8 +13,8 @@ namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> texture_types{"bitmap",  "checkerboard", "rawconstant",
-                                             "uniform", "srgb",         "d65"};
+const std::vector<std::string> texture_types{
+    "bitmap", "checkerboard", "mesh_attribute", "rawconstant", "uniform", "srgb", "d65"};
 
 bool any_below(const Rgb &rgb, double limit) {
     return rgb.r < limit || rgb.g < limit || rgb.b < limit;
@@ -185,6 +185,9 @@ int SceneReader::read_checkerboard(Properties &properties, SpectrumUse use) {
 int SceneReader::read_spectrum_object(Properties &properties, SpectrumUse use) {
     // In RGB mode "uniform" and "d65" are grey, also in lights.
     const std::string &type = properties.object().type;
+    const std::string needed = type == "srgb" ? "color" : type == "uniform" ? "value" : "";
+    if (!needed.empty() && properties.find(needed) == nullptr)
+        properties.fail(needed, "is missing, expected what the texture shows");
     if (type == "srgb")
         return read_colour(properties, "color", use);
     const std::string name = type == "d65" ? "scale" : "value";

@@ -63,6 +63,12 @@ TEST_CASE("integrators of the same light are path tracing", "[integrators]") {
     CHECK(load(integrator("direct_projective")).integrator.kind == IntegratorKind::direct);
     CHECK(has(test::error_of_text(integrator("bdpt", "\n<integer name='max_depth' value='-2'/>")),
               "3: integrator \"bdpt\": \"max_depth\""));
+    // What is written wrong is told, in place of a picture of other depth.
+    for (const char *name : {"maxDepth", "max_dpth"})
+        CHECK(has(test::error_of_text(integrator(
+                      "volpath", "\n<integer name='" + std::string(name) + "' value='2'/>")),
+                  "3: integrator \"volpath\" has the unknown property \"" + std::string(name) +
+                      "\", did you mean \"max_depth\"?"));
 }
 
 TEST_CASE("light that path tracing does not find is warned of", "[integrators]") {
