@@ -53,8 +53,7 @@ void flatten_integrator(Flattening &work) {
 
 /// The rays of the film positions (x, y), in pixels: from the eye's place plus
 /// origin + x origin_x + y origin_y along way + x way_x + y way_y, whose component along the axis
-/// is
-/// 1. The axis is a unit vector; `depth_axis` is at right angles to the plane on which the rays
+/// is 1. The axis is a unit vector; `depth_axis` is at right angles to the plane on which the rays
 /// begin, and grows by 1 with a step along the axis.
 struct FilmRays {
     glm::dvec3 axis, depth_axis;

@@ -1,7 +1,6 @@
 /// Emitter "projector".
 
 #include "mitsuba_scene.h"
-#include "scene/limits.h"
 
 namespace clrender::mitsuba {
 
@@ -19,11 +18,7 @@ void SceneReader::read_projector(Properties &properties, Emitter &emitter) {
         throw InputError(properties.where(),
                          properties.description() + " has no \"irradiance\", expected a texture");
     check_projected(properties, "irradiance", emitter.radiance);
-    emitter.scale = properties.number("scale", 1);
-    if (emitter.scale < 0)
-        properties.fail("scale", "is negative, expected no number below 0");
-    if (emitter.scale > max_radiance)
-        properties.fail("scale", "is too large, expected no number above 1e+30");
+    emitter.scale = read_emitter_scale(properties);
     emitter.to_world = properties.transform("to_world");
     const FieldOfView field = read_field_of_view(properties);
     emitter.fov = field.degrees;

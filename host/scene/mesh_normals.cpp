@@ -63,4 +63,11 @@ void complete_normals(Mesh &mesh) {
             mesh.normals[i] = smooth[i];
 }
 
+void set_normals(Mesh &mesh, bool face_normals) {
+    if (face_normals)
+        mesh.normals.clear();
+    else
+        complete_normals(mesh);
+}
+
 } // namespace clrender

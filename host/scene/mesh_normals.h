@@ -16,4 +16,7 @@ std::vector<glm::vec3> smooth_normals(const Mesh &mesh);
 /// whether it has no others.
 void complete_normals(Mesh &mesh);
 
+/// As complete_normals, or takes all normals away where the shape asks for flat faces.
+void set_normals(Mesh &mesh, bool face_normals);
+
 } // namespace clrender

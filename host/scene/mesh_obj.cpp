@@ -283,10 +283,7 @@ Mesh read_obj_mesh(const std::string &path, const MeshReadOptions &options,
                    const SourceLocation &referrer) {
     ObjBuilder builder(path, referrer, options);
     builder.read();
-    if (options.face_normals)
-        builder.mesh.normals.clear();
-    else
-        complete_normals(builder.mesh);
+    set_normals(builder.mesh, options.face_normals);
     return std::move(builder.mesh);
 }
 

@@ -468,10 +468,7 @@ Mesh read_ply_mesh(const std::string &path, const MeshReadOptions &options,
     if (options.flip_tex_coords)
         for (glm::vec2 &uv : mesh.uvs)
             uv.y = 1 - uv.y;
-    if (options.face_normals)
-        mesh.normals.clear();
-    else
-        complete_normals(mesh);
+    set_normals(mesh, options.face_normals);
     return mesh;
 }
 

@@ -259,12 +259,9 @@ Mesh read_serialized_mesh(const std::string &path, const MeshReadOptions &option
     read_triangles(stream, triangles, vertices, mesh);
     if ((flags & flag_face_normals) != 0 && !options.face_normals)
         log::warn(SourceLocation{path, 0},
-                  "the wish of the file for face normals is ignored, as by "
+                  "the flag of the file for face normals is ignored, as by "
                   "Mitsuba 3: \"face_normals\" of the shape says it");
-    if (options.face_normals)
-        mesh.normals.clear();
-    else
-        complete_normals(mesh);
+    set_normals(mesh, options.face_normals);
     return mesh;
 }
 

@@ -77,6 +77,15 @@ void SceneReader::read_emitter(int object) {
     scene_.emitters.push_back(std::move(emitter));
 }
 
+double read_emitter_scale(Properties &properties) {
+    const double scale = properties.number("scale", 1);
+    if (scale < 0)
+        properties.fail("scale", "is negative, expected no number below 0");
+    if (scale > max_radiance)
+        properties.fail("scale", "is too large, expected no number above 1e+30");
+    return scale;
+}
+
 void SceneReader::read_point(Properties &properties, Emitter &emitter) {
     emitter.kind = EmitterKind::point;
     emitter.intensity = read_constant(properties, "intensity", SpectrumUse::emission, Rgb(1));
@@ -88,11 +97,7 @@ void SceneReader::read_point(Properties &properties, Emitter &emitter) {
 
 void SceneReader::read_envmap(Properties &properties, Emitter &emitter) {
     emitter.kind = EmitterKind::envmap;
-    emitter.scale = properties.number("scale", 1);
-    if (emitter.scale < 0)
-        properties.fail("scale", "is negative, expected no number below 0");
-    if (emitter.scale > max_radiance)
-        properties.fail("scale", "is too large, expected no number above 1e+30");
+    emitter.scale = read_emitter_scale(properties);
     emitter.to_world = properties.transform("to_world");
     properties.ignore({"mis_compensation"});
     emitter.bitmap =

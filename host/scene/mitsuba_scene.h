@@ -164,6 +164,9 @@ ReconstructionFilter read_filter(const Document &document, int object);
 /// Gives a shape from a mesh file the normals that Mitsuba gives it after `to_world`.
 void follow_transform(Shape &shape);
 
+/// What a light's texture or map is multiplied with; 1 where nothing is stated.
+double read_emitter_scale(Properties &properties);
+
 /// True if a transformation turns, mirrors and scales alone, as far as float32 exporters manage.
 bool is_similarity(const glm::dmat3 &m);
 

@@ -6,7 +6,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <fmt/format.h>
 
 using namespace clrender;
@@ -109,75 +108,4 @@ TEST_CASE("instances share the triangles of their group") {
     const FlatScene copied = flatten(scene_from_xml(copies()));
     CHECK(flat.instances.size() == 3);
     CHECK(flat.triangle_count * 3 == copied.triangle_count);
-}
-
-namespace {
-
-constexpr const char *surface = R"(<bsdf type="twosided"><bsdf type="diffuse">
-    <rgb name="reflectance" value=".95"/></bsdf></bsdf>)";
-
-/// Where a box of half size 1 is put: turned, scaled, moved.
-struct Place {
-    double size, angle, x, y, z;
-};
-
-/// An instance of `group`, turned first, then put in its place; `flip` is the sign of a scale.
-std::string instance(const char *group, const char *first, const Place &p, int flip) {
-    return fmt::format(R"(<shape type="instance"><ref id="{}"/><transform name="to_world">{}
-        <rotate x=".8" y=".6" angle="{}"/><scale x="{}" y="{}" z="{}"/>
-        <translate x="{}" y="{}" z="{}"/></transform></shape>)",
-                       group, first, p.angle, p.size, flip * p.size, p.size, p.x, p.y, p.z);
-}
-
-/// A cube that is one instance, mirrored.
-std::string cube(const Place &place) {
-    return fmt::format(
-               R"(<shape type="shapegroup" id="cube"><shape type="cube">{}</shape></shape>)",
-               surface) +
-           instance("cube", "", place, -1);
-}
-
-/// Six walls, an instance each.
-std::string walls(const Place &place) {
-    std::string xml = fmt::format(
-        R"(<shape type="shapegroup" id="wall"><shape type="rectangle">{}</shape></shape>)",
-        surface);
-    for (const char *turn : {R"(y="1" angle="0")", R"(y="1" angle="90")", R"(y="1" angle="180")",
-                             R"(y="1" angle="270")", R"(x="1" angle="90")", R"(x="1" angle="-90")"})
-        xml += instance("wall", fmt::format(R"(<translate z="-1"/><rotate {}/>)", turn).c_str(),
-                        place, 1);
-    return xml;
-}
-
-/// Pixels that are not black, of a picture taken inside under a bright sky.
-int lit_pixels(const std::string &box, const Place &p) {
-    const bool full = std::getenv("CLRENDER_STRESS") != nullptr;
-    const int side = full ? 192 : 48;
-    const std::string xml = fmt::format(
-        R"(<integrator type="path"><integer name="max_depth" value="100"/>
-        <integer name="rr_depth" value="1000"/></integrator>
-        <sensor type="perspective"><float name="fov" value="100"/><transform name="to_world">
-        <lookat origin="{0} {1} {2}" target="{3} {4} {5}" up="0 1 0"/></transform>
-        <film type="hdrfilm"><rfilter type="box"/><integer name="width" value="{6}"/>
-        <integer name="height" value="{6}"/></film></sensor>
-        <emitter type="constant"><rgb name="radiance" value="1e5"/></emitter>{7})",
-        p.x, p.y, p.z, p.x - p.size, p.y - 0.6 * p.size, p.z - 0.4 * p.size, side, box);
-    const Image image = render_measured(scene_from_xml(xml), {.spp = full ? 272 : 16}).mean;
-    int lit = 0;
-    for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x)
-            lit += value_at(image, x, y) == 0 ? 0 : 1;
-    return lit;
-}
-
-} // namespace
-
-TEST_CASE("sealed boxes of instances stay black inside under a bright sky") {
-    for (const Place &place :
-         {Place{1, 0, 0, 0, 0}, Place{1, 31, 0, 0, 0}, Place{0.001, 17, 12.3, -4.56, 7.8},
-          Place{370, 77, 1e5, -2345.6, 33333.3}}) {
-        INFO("size " << place.size << ", turned by " << place.angle);
-        CHECK(lit_pixels(cube(place), place) == 0);
-        CHECK(lit_pixels(walls(place), place) == 0);
-    }
 }

@@ -98,6 +98,34 @@ std::string closed_mesh(const Place &place) {
     return mesh(text, place);
 }
 
+/// An instance of `group`, turned first, then put in its place; `flip` is the sign of a scale.
+std::string instance(const char *group, const char *first, const Place &p, int flip) {
+    return fmt::format(R"(<shape type="instance"><ref id="{}"/><transform name="to_world">{}
+        <rotate x=".8" y=".6" angle="{}"/><scale x="{}" y="{}" z="{}"/>
+        <translate x="{}" y="{}" z="{}"/></transform></shape>)",
+                       group, first, p.angle, p.size, flip * p.size, p.size, p.x, p.y, p.z);
+}
+
+/// A cube that is one instance, mirrored.
+std::string cube_instance(const Place &place) {
+    return fmt::format(
+               R"(<shape type="shapegroup" id="cube"><shape type="cube">{}</shape></shape>)",
+               surface) +
+           instance("cube", "", place, -1);
+}
+
+/// Six walls, an instance each.
+std::string wall_instances(const Place &place) {
+    std::string xml = fmt::format(
+        R"(<shape type="shapegroup" id="wall"><shape type="rectangle">{}</shape></shape>)",
+        surface);
+    for (const char *turn : {R"(y="1" angle="0")", R"(y="1" angle="90")", R"(y="1" angle="180")",
+                             R"(y="1" angle="270")", R"(x="1" angle="90")", R"(x="1" angle="-90")"})
+        xml += instance("wall", fmt::format(R"(<translate z="-1"/><rotate {}/>)", turn).c_str(),
+                        place, 1);
+    return xml;
+}
+
 /// Pixels that are not black, of a picture taken inside under a bright sky.
 int lit_pixels(const std::string &box, const Place &p) {
     const bool full = std::getenv("CLRENDER_STRESS") != nullptr;
@@ -133,4 +161,12 @@ TEST_CASE("sealed boxes stay black inside under a bright sky") {
             INFO(box.name << " of size " << place.size << ", turned by " << place.angle);
             CHECK(lit_pixels(box.make(place), place) == 0);
         }
+}
+
+TEST_CASE("sealed boxes of instances stay black inside under a bright sky") {
+    for (const Place &place : places) {
+        INFO("size " << place.size << ", turned by " << place.angle);
+        CHECK(lit_pixels(cube_instance(place), place) == 0);
+        CHECK(lit_pixels(wall_instances(place), place) == 0);
+    }
 }
