@@ -10,6 +10,7 @@
 #include "shared/launch_data.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
+#include "shared/specular_connector.h"
 
 #include <array>
 #include <cstddef>
