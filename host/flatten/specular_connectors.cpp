@@ -152,7 +152,7 @@ void add_plane(const FlatScene &flat, std::size_t prim, bool back, const Connect
 void flatten_specular_connectors(Flattening &work) {
     FlatScene &flat = work.flat;
     constexpr int least_edges = 3; // to the vertex, to the specular surface, to the light
-    if (flat.facts.shows_depth || flat.facts.strategy == Strategy::bsdf ||
+    if (!work.options.specular_connections || flat.facts.shows_depth || flat.facts.strategy == Strategy::bsdf ||
         flat.frame.max_depth < least_edges)
         return;
     std::vector<SpecularConnector> &all = flat.specular_connectors;
