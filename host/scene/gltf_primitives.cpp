@@ -132,8 +132,8 @@ bool is_mirrored(const Mesh &mesh, const Triangle &t) {
     const glm::dvec2 uv2(mesh.uvs[t[2]] - mesh.uvs[t[0]]);
     double side = 1;
     if (!mesh.normals.empty())
-        side = glm::dot(normal, glm::dvec3(mesh.normals[t[0]] + mesh.normals[t[1]] +
-                                           mesh.normals[t[2]]));
+        side = glm::dot(normal,
+                        glm::dvec3(mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]]));
     return (uv1.x * uv2.y - uv1.y * uv2.x) * side > 0;
 }
 
@@ -200,8 +200,7 @@ std::vector<SurfacedMesh> surfaced(const Document &document, Primitive primitive
             numbers.values.resize(2 * mesh.positions.size());
         }
         if (set != surface.set)
-            mesh.attributes.push_back(
-                attribute_of(coordinates_attribute(set), numbers, 0, 2, 3));
+            mesh.attributes.push_back(attribute_of(coordinates_attribute(set), numbers, 0, 2, 3));
         else
             for (std::size_t i = 0; i < numbers.values.size(); i += 2)
                 mesh.uvs.emplace_back(numbers.values[i], numbers.values[i + 1]);
@@ -221,14 +220,13 @@ std::vector<SurfacedMesh> surfaced(const Document &document, Primitive primitive
             mirrored.triangles.assign(middle, mesh.triangles.end());
             mesh.triangles.erase(middle, mesh.triangles.end());
             needs.flips_normals = true;
-            parts.push_back({std::make_shared<const Mesh>(std::move(mirrored)),
-                             surfaces.surface(needs)});
+            parts.push_back(
+                {std::make_shared<const Mesh>(std::move(mirrored)), surfaces.surface(needs)});
         }
     }
     needs.flips_normals = false;
     if (!mesh.triangles.empty())
-        parts.push_back(
-            {std::make_shared<const Mesh>(std::move(mesh)), surfaces.surface(needs)});
+        parts.push_back({std::make_shared<const Mesh>(std::move(mesh)), surfaces.surface(needs)});
     return parts;
 }
 

@@ -51,9 +51,9 @@ private:
     std::vector<PlacedNode> nodes_;
     Images images_;
     SurfaceMaker surfaces_;
-    std::map<int, std::vector<glm::dmat4>> places_;     ///< by mesh
-    std::map<int, std::vector<Primitive>> primitives_;  ///< by mesh
-    std::map<int, std::vector<SurfacedMesh>> parts_;    ///< by mesh
+    std::map<int, std::vector<glm::dmat4>> places_;    ///< by mesh
+    std::map<int, std::vector<Primitive>> primitives_; ///< by mesh
+    std::map<int, std::vector<SurfacedMesh>> parts_;   ///< by mesh
     bool is_lit_ = false;
     bool has_camera_ = false;
 };
@@ -112,8 +112,7 @@ Shape SceneMaker::shape_of(const SurfacedMesh &part, const glm::dmat4 &to_world)
 void SceneMaker::add_shapes(const SurfacedMesh &part, const glm::dmat4 &to_world) {
     Shape shape = shape_of(part, to_world);
     // The standard turns the order of a mirrored triangle's corners over.
-    shape.flip_normals =
-        part.mesh->normals.empty() && glm::determinant(glm::dmat3(to_world)) < 0;
+    shape.flip_normals = part.mesh->normals.empty() && glm::determinant(glm::dmat3(to_world)) < 0;
     scene_.shapes.push_back(std::move(shape));
     if (part.surface.radiance != none)
         add_area_light(scene_, part.surface.radiance);
