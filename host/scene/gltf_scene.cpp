@@ -39,6 +39,7 @@ public:
     void add_meshes();
     void add_lights();
     void add_sensor(std::optional<int> chosen);
+    void warn_of_passages() const;
 
 private:
     void read_primitives();
@@ -155,6 +156,21 @@ void SceneMaker::add_lights() {
         }
 }
 
+/// Lights that are points or directions are found by shadow rays alone, which take what light
+/// passes straight through for opaque.
+void SceneMaker::warn_of_passages() const {
+    const bool has_passages =
+        std::any_of(scene_.bsdfs.begin(), scene_.bsdfs.end(), [](const Bsdf &bsdf) {
+            return std::holds_alternative<MaskBsdf>(bsdf.model) ||
+                   std::holds_alternative<ThinDielectricBsdf>(bsdf.model);
+        });
+    if (is_lit_ && has_passages &&
+        std::any_of(scene_.emitters.begin(), scene_.emitters.end(),
+                    [](const Emitter &emitter) { return emitter.kind != EmitterKind::area; }))
+        document_.warn("", "its punctual lights do not shine through surfaces with alpha or thin "
+                           "glass, which throw whole shadows");
+}
+
 void SceneMaker::add_sensor(std::optional<int> chosen) {
     std::vector<const PlacedNode *> cameras;
     for (const PlacedNode &node : nodes_)
@@ -193,6 +209,7 @@ Scene load_gltf(const std::string &path, const LoadOptions &options) {
     SceneMaker maker(document, scene);
     maker.add_meshes();
     maker.add_lights();
+    maker.warn_of_passages();
     maker.add_sensor(options.sensor);
     return scene;
 }
