@@ -172,8 +172,9 @@ enum class IntegratorKind { path, direct, depth };
 
 struct Integrator {
     IntegratorKind kind = IntegratorKind::path;
-    int max_depth = -1; ///< path: edges of the longest path; -1 = unbounded
-    int rr_depth = 5;   ///< path: roulette from this depth on
+    int max_depth = -1;          ///< path: edges of the longest path; -1 = unbounded
+    std::optional<int> rr_depth; ///< path: roulette from this depth on; where none is stated, as a
+                                 ///< weight window
     bool hide_emitters = false;
     bool skips_passages = false; ///< path: what lets light pass straight is no edge
     int emitter_samples = 1;     ///< direct
