@@ -29,6 +29,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_DISKS, 1),
         CLR_SETTING(HAS_TRIANGLES, 1),
         CLR_SETTING(HAS_BVH_SPHERES, 1),
+        CLR_SETTING(HAS_QUADRICS, 1),
         CLR_SETTING(HAS_INSTANCES, 1),
         CLR_SETTING(HAS_VERTEX_NORMALS, 1),
         CLR_SETTING(HAS_UVS, 1),
@@ -58,6 +59,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_PROJECTORS, 1),
         CLR_SETTING(HAS_DIRECTIONAL_LIGHTS, 1),
         CLR_SETTING(HAS_SPHERE_LIGHTS, 1),
+        CLR_SETTING(HAS_QUADRIC_LIGHTS, 1),
         CLR_SETTING(HAS_PLANAR_LIGHTS, 1),
         CLR_SETTING(HAS_TRIANGLE_LIGHTS, 1),
         CLR_SETTING(HAS_LENS, 1),
@@ -73,6 +75,7 @@ const std::multimap<std::string, std::string> &dependents() {
     static const std::multimap<std::string, std::string> table = {
         {"HAS_UVS", "HAS_TANGENTS"},
         {"HAS_TRIANGLES", "HAS_INSTANCES"},
+        {"HAS_QUADRICS", "HAS_QUADRIC_LIGHTS"},
         {"HAS_TRIANGLES", "HAS_ATTRIBUTES"},
         {"HAS_TANGENTS", "HAS_BUMPMAP"},
         {"HAS_TANGENTS", "HAS_NORMALMAP"},

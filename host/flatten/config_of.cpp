@@ -38,8 +38,10 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     config.HAS_DISKS = any(flat.planars, [](const Planar &p) { return p.is_disk != 0; });
     config.HAS_TRIANGLES = flat.triangle_count > 0 ? 1 : 0;
     config.HAS_BVH_SPHERES = flat.has_bvh_spheres() ? 1 : 0;
+    config.HAS_QUADRICS = flat.quadrics.empty() ? 0 : 1;
     config.HAS_INSTANCES = flat.instances.empty() ? 0 : 1;
-    const bool has_hierarchy = config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
+    const bool has_hierarchy =
+        config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0 || config.HAS_QUADRICS != 0;
     config.BRUTE_FORCE = has_hierarchy && sampling.brute_force && flat.groups.empty() ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
     config.HAS_UVS = flat.needs_uvs() ? 1 : 0;
@@ -139,6 +141,9 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
             break;
         case CLR_LIGHT_SPHERE:
             config.HAS_SPHERE_LIGHTS = 1;
+            break;
+        case CLR_LIGHT_QUADRIC:
+            config.HAS_QUADRIC_LIGHTS = 1;
             break;
         case CLR_LIGHT_PLANAR:
             config.HAS_PLANAR_LIGHTS = 1;
