@@ -8,6 +8,7 @@
 #include "shared/bsdf_parameters.h"
 #include "shared/instance.h"
 #include "shared/launch_data.h"
+#include "shared/quadric.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
 
@@ -48,6 +49,7 @@ struct SceneFacts {
     int filter_border = 0; ///< pixels around its own that a sample reaches
     Strategy strategy = Strategy::mis;
     bool shows_depth = false; ///< the depth integrator
+    bool weight_window = false; ///< roulette is one, where paths are long enough
     bool hides_emitters = false;
     bool free_passages = false; ///< as FREE_PASSAGES, if there are passages
     bool has_alpha = false;
@@ -68,6 +70,7 @@ struct FlatScene {
     /// What build_hierarchy() makes the tree of.
     std::vector<TriangleCorners> corners;
     std::vector<BvhSphere> bvh_spheres;
+    std::vector<BvhQuadric> bvh_quadrics;
     /// What it makes the groups' trees of. Until then Instance::root is the index of a group.
     std::vector<FlatGroup> groups;
 

@@ -186,6 +186,33 @@ void add_planar(const Flattening &work, const AreaEmitter &emitter, EmitterInfo 
     list.add(light, extent);
 }
 
+/// An ellipsoid, a cylinder or a disk of the BVH.
+void add_quadric(const Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                 LightList &list) {
+    const FlatScene &flat = work.flat;
+    Light light = emitter.base;
+    light.prim = info.first_prim = work.primitive_of_shape.at(emitter.shape);
+    info.light = list.size();
+    info.kind = light.kind = CLR_LIGHT_QUADRIC;
+    const Quadric &q = flat.quadrics[light.prim - flat.frame.prim_quadric];
+    const QuadricExtent extent = quadric_extent(q);
+    // An ellipsoid that shines inwards is met by chance only: nothing outside sees it.
+    if (!(emitter.radiance > 0) || (q.kind == CLR_QUADRIC_ELLIPSOID && q.orientation < 0))
+        return;
+    info.density = 1;
+    const glm::dvec3 center = in_single(q.center);
+    LightExtent bounds{center - extent.half,
+                       center + extent.half,
+                       {0, 0, 1},
+                       -1,
+                       extent.projected_area * emitter.radiance};
+    if (q.kind == CLR_QUADRIC_DISK) {
+        bounds.axis = glm::normalize(in_single(q.z)) * in_single(q.orientation);
+        bounds.cosine = 1;
+    }
+    list.add(light, bounds);
+}
+
 void add_area(Flattening &work, std::size_t index, LightList &list) {
     const Emitter &source = work.scene.emitters[index];
     EmitterInfo &info = work.flat.emitters[index];
@@ -204,6 +231,9 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         break;
     case ShapeTest::planar:
         add_planar(work, emitter, info, list);
+        break;
+    case ShapeTest::quadric:
+        add_quadric(work, emitter, info, list);
         break;
     case ShapeTest::triangles:
         add_triangles(work, emitter, info, list);
@@ -238,7 +268,8 @@ double shadow_free_distance(const LightExtent &light, const Sphere &sphere) {
 /// its own way, and large spheres may be shown never to be.
 void set_sole_light(const LightExtent &extent, FlatScene &flat) {
     Light &sole = flat.lights.front();
-    if (sole.kind == CLR_LIGHT_PLANAR || sole.kind == CLR_LIGHT_TRIANGLE)
+    if (sole.kind == CLR_LIGHT_PLANAR || sole.kind == CLR_LIGHT_TRIANGLE ||
+        sole.kind == CLR_LIGHT_QUADRIC)
         store(sole.position, (extent.lower + extent.upper) * 0.5);
     const glm::dvec3 diagonal = extent.upper - extent.lower;
     flat.frame.final_distance2 = static_cast<clr_real>(glm::dot(diagonal, diagonal));

@@ -31,6 +31,7 @@ struct Flattening {
     bool vertex_normals = false;    ///< some mesh has them, so all have the arrays
     bool spheres_in_bvh = false;    ///< there are too many to test them one by one
     bool rectangles_in_bvh = false; ///< likewise, with the disks; as triangles
+    bool disks_in_bvh = false;      ///< likewise, as quadrics
 
     /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
     [[nodiscard]] bool wants(const char *name) const {
@@ -60,7 +61,7 @@ int dielectric_shades(const std::vector<Material> &materials);
 /// (`absent` for none) goes to constant[0..2].
 uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant);
 
-/// Spheres, planars, meshes and the BVH; shape infos name emitters by Scene's index.
+/// Spheres, planars, meshes, quadrics and the BVH; shape infos name emitters by Scene's index.
 void flatten_shapes(Flattening &work);
 
 /// The meshes of groups, behind those of the scene, and the places of their instances.

@@ -92,6 +92,7 @@ private:
     // mitsuba_shapes.cpp
     void read_shape(int object);
     void read_sphere(Properties &properties, Shape &shape);
+    void read_cylinder(Properties &properties, Shape &shape);
     void read_mesh_file(Properties &properties, Shape &shape);
     void read_surface(Properties &properties, Shape &shape);
 
@@ -163,6 +164,9 @@ ReconstructionFilter read_filter(const Document &document, int object);
 
 /// Gives a shape from a mesh file the normals that Mitsuba gives it after `to_world`.
 void follow_transform(Shape &shape);
+
+/// Fails where a sphere or a cylinder becomes so thin that float32 would say little of it.
+void check_thickness(const Properties &properties, const Shape &shape);
 
 /// What a light's texture or map is multiplied with; 1 where nothing is stated.
 double read_emitter_scale(Properties &properties);

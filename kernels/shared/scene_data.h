@@ -12,7 +12,7 @@ CLR_PRECISION_BEGIN
 #define CLR_NONE 0xffffffffu
 
 /* Primitives are numbered through: first the spheres and then the planars that every ray tests,
-   lane-wise; then what lies in the BVH, first the triangles and then its spheres. */
+   lane-wise; then what lies in the BVH: the triangles, its spheres, and the quadrics. */
 
 /* A sphere; a negative radius turns its normal inwards. */
 typedef struct {
@@ -125,13 +125,15 @@ CLR_STATIC_WORDS(ShapeFrame, 9);
 #define CLR_LIGHT_SPOT 4u
 #define CLR_LIGHT_PROJECTOR 5u
 #define CLR_LIGHT_DIRECTIONAL 6u
+#define CLR_LIGHT_QUADRIC 7u
 
-/* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
-   light triangles or of the light beams; bit k of `trail` is the child taken at level k of the
-   light tree. `position` is that of a point, spot or projector, the centre of a sphere, the middle
-   of the only light, or of a directional one the unit vector towards it. Point and spot: radiance
-   holds the intensity, times the square of the unit of length; projector: pi times the irradiance
-   at distance 1, or pi where a texture tells it, times the same; directional: the irradiance. */
+/* One thing that light sampling can choose. `prim` is the sphere, the planar, the quadric, or the
+   entry of the light triangles or of the light beams; bit k of `trail` is the child taken at level
+   k of the light tree. `position` is that of a point, spot or projector, the centre of a sphere,
+   the middle of the only light, or of a directional one the unit vector towards it. Point and spot:
+   radiance holds the intensity, times the square of the unit of length; projector: pi times the
+   irradiance at distance 1, or pi where a texture tells it, times the same; directional: the
+   irradiance. */
 typedef struct {
     clr_real position[3];
     clr_word kind;
@@ -148,9 +150,9 @@ CLR_STATIC_WORDS(Light, 16);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
-   triangle that is the only light, 1 for spheres and for the other triangles (kind says which), 0
-   where it is never sampled. Primitive `first_prim` is light `light`, and the further triangles of
-   a mesh are the lights that follow. */
+   triangle that is the only light, 1 for spheres, quadrics and the other triangles (kind says
+   which), 0 where it is never sampled. Primitive `first_prim` is light `light`, and the further
+   triangles of a mesh are the lights that follow. */
 typedef struct {
     clr_real radiance[3];
     clr_word texture;
