@@ -41,7 +41,7 @@ GROUPS = {
     "number of lights": "LIGHT_COUNT,HAS_ORIENTED_LIGHTS,SOLE_EMITTER,SOLE_LIGHT_SPHERE",
     "environment map": "ENVIRONMENT",
     "lens and clipping": "HAS_LENS,HAS_CLIP",
-    "roulette": "HAS_ROULETTE",
+    "roulette": "ROULETTE",
     "alpha": "HAS_ALPHA",
 }
 SPECIALISED, EVERYTHING = "specialised", "everything"

@@ -64,7 +64,6 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_TRIANGLE_LIGHTS, 1),
         CLR_SETTING(HAS_LENS, 1),
         CLR_SETTING(HAS_CLIP, 1),
-        CLR_SETTING(HAS_ROULETTE, 1),
         CLR_SETTING(HAS_ALPHA, 1),
     };
 #undef CLR_SETTING
@@ -100,8 +99,9 @@ const std::multimap<std::string, std::string> &dependents() {
 
 const ForcedFeatures &all_features() {
     static const ForcedFeatures all = [] {
-        // Two are counts, which flatten() raises to one; of the third it makes a map.
-        ForcedFeatures names = {"SPHERE_COUNT", "PLANAR_COUNT", "ENVIRONMENT"};
+        // Two are counts, which flatten() raises to one; of the third it makes a map; of the fourth
+        // the scene may have another kind.
+        ForcedFeatures names = {"SPHERE_COUNT", "PLANAR_COUNT", "ENVIRONMENT", "ROULETTE"};
         for (const auto &[name, setting] : settings())
             names.insert(name);
         return names;

@@ -158,6 +158,17 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
     config.ENVIRONMENT = flat.facts.environment;
 }
 
+/// The window needs two vertices that scatter; a depth has to come before the end of the paths.
+int roulette_of(const FlatScene &flat, bool has_free_passages) {
+    const FrameData &f = flat.frame;
+    constexpr int least_window_depth = 3;
+    if (flat.facts.shows_depth)
+        return CLR_ROULETTE_NONE;
+    if (flat.facts.weight_window && f.max_depth >= least_window_depth)
+        return CLR_ROULETTE_WINDOW;
+    return f.rr_depth < f.max_depth || has_free_passages ? CLR_ROULETTE_DEPTH : CLR_ROULETTE_NONE;
+}
+
 void set_integrator(const FlatScene &flat, const SamplingOptions &sampling, KernelConfig &config) {
     const FrameData &f = flat.frame;
     config.INTEGRATOR = flat.facts.shows_depth ? CLR_INTEGRATOR_DEPTH : CLR_INTEGRATOR_PATH;
@@ -167,8 +178,7 @@ void set_integrator(const FlatScene &flat, const SamplingOptions &sampling, Kern
     config.FREE_PASSAGES =
         flat.facts.free_passages && (config.HAS_NULL != 0 || config.HAS_THINDIELECTRIC != 0) ? 1
                                                                                              : 0;
-    config.HAS_ROULETTE =
-        !flat.facts.shows_depth && (f.rr_depth < f.max_depth || config.FREE_PASSAGES != 0) ? 1 : 0;
+    config.ROULETTE = roulette_of(flat, config.FREE_PASSAGES != 0);
     // The last ray of a path would only bring what multiple importance sampling expects of it:
     // light. After some bounces all of it may as well come from light sampling, where that cannot
     // miss: of several lights it might choose one that is hidden, and seldom the one that shines.
@@ -223,6 +233,8 @@ KernelConfig config_of(const FlatScene &flat, const SamplingOptions &sampling,
     set_camera(flat, config);
     force_features(sampling.forced_features, config);
     config.HAS_UVS |= config.HAS_TANGENTS;
+    if (sampling.forced_features.count("ROULETTE") != 0 && config.ROULETTE == CLR_ROULETTE_NONE)
+        config.ROULETTE = CLR_ROULETTE_DEPTH;
     // The map is there, unless the scene's strategy forbids it.
     if (sampling.forced_features.count("ENVIRONMENT") != 0 && !flat.env_cdf.empty())
         config.ENVIRONMENT = CLR_ENVIRONMENT_MAP;

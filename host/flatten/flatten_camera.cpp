@@ -39,7 +39,8 @@ void flatten_integrator(Flattening &work) {
     const Integrator &integrator = work.scene.integrator;
     FrameData &f = flat.frame;
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
-    f.rr_depth = integrator.rr_depth;
+    f.rr_depth = integrator.rr_depth.value_or(window_end_depth);
+    flat.facts.weight_window = !integrator.rr_depth && integrator.kind == IntegratorKind::path;
     flat.facts.free_passages = integrator.skips_passages && integrator.max_depth >= 0;
     if (f.max_depth > max_depth_without_roulette || flat.facts.free_passages)
         f.rr_depth = std::min(f.rr_depth, max_depth_without_roulette);

@@ -29,12 +29,13 @@ glm::dvec3 in_single(const clr_real (&v)[3]) {
 }
 
 /// Mean luminance of an attribute's values, by vertex or triangle.
-double mean_luminance(const MeshAttribute &attribute) {
+double mean_luminance(const MeshAttribute &attribute, const Rgb &scale) {
     const std::size_t count = attribute.values.size() / attribute.channels;
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const float *value = &attribute.values[i * attribute.channels];
-        sum += attribute.channels == 1 ? value[0] : luminance({value[0], value[1], value[2]});
+        sum += luminance(
+            scale * (attribute.channels == 1 ? Rgb(value[0]) : Rgb(value[0], value[1], value[2])));
     }
     return count > 0 ? sum / static_cast<double>(count) : 0;
 }
@@ -44,7 +45,7 @@ double mean_luminance(const Texture &texture, const Shape &shape) {
     if (texture.kind != TextureKind::attribute)
         return mean_luminance(texture);
     const MeshAttribute *attribute = find_attribute(*shape.mesh, texture.attribute);
-    return attribute == nullptr ? 0 : texture.scale * mean_luminance(*attribute);
+    return attribute == nullptr ? 0 : mean_luminance(*attribute, texture.scale);
 }
 
 /// The cone of the normals by which a triangle shines: its own, or those of its vertices.
@@ -329,7 +330,7 @@ double mean_luminance(const Texture &texture) {
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i)
-        sum += luminance(texel_color(image, i, texture.format));
+        sum += luminance(texture.scale * texel_color(image, i, texture.format));
     return sum / static_cast<double>(count);
 }
 

@@ -40,7 +40,7 @@ typedef struct {
     clr_real env_density; /* of light sampling, per solid angle: this times the weight of the place,
                           times the sines of the row's middle over that of the place */
     int max_depth;        /* edges of the longest path; INT_MAX: unbounded */
-    int rr_depth;         /* roulette from this depth on; INT_MAX: never */
+    int rr_depth;         /* roulette at every vertex from this depth on; INT_MAX: never */
     uint width;           /* of the picture (the crop window), pixels */
     uint height;
     int crop_x; /* of the crop window within the whole film */

@@ -232,16 +232,27 @@ CLR_STATIC_WORDS(LightNode, 24);
 
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
    bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. An
-   attribute of meshes is number `offset` of `width`, constant over a face where it is `nearest`,
-   and scaled by color0[0]: its triple of vertex or triangle i of shape s is number
-   attribute_places[s * width + offset] + i, modulo 2^32. */
+   attribute of meshes is number `offset` of the `attributes` that there are, constant over a face
+   where it is `nearest`: its triple of vertex or triangle i of shape s is number
+   attribute_places[s * attributes + offset] + i, modulo 2^32. A bitmap can be looked up where the
+   attribute `coordinates` says, in place of (u, v). Bitmaps and attributes are multiplied with
+   color0, and with the attribute `product` if there is one. A number is 1 from the cutoff
+   color1[0] on, else 0, where `is_cut`. */
 #define CLR_DECODE_LINEAR 0u
 #define CLR_DECODE_SRGB 1u
 #define CLR_DECODE_HALF 2u /* added: the same, rounded to half precision */
+
+/* What is asked for of a bitmap: its colour, or a number, which is its luminance or a channel. */
+#define CLR_TEXEL_COLOR 0u
+#define CLR_TEXEL_LUMINANCE 1u
+#define CLR_TEXEL_RED 2u
+#define CLR_TEXEL_GREEN 3u
+#define CLR_TEXEL_BLUE 4u
+
 typedef struct {
     clr_real to_uv[6];
     uint kind;
-    uint wrap;
+    uint wrap; /* along u */
     uint width;
     uint height;
     uint offset;
@@ -249,9 +260,13 @@ typedef struct {
     clr_real color0[3];
     uint decode;
     clr_real color1[3];
-    uint is_number; /* a bitmap's luminance is asked for */
+    uint number; /* CLR_TEXEL_* */
+    uint wrap_v; /* along v */
+    uint is_cut;
+    uint coordinates, product, attributes;
+    uint unused;
 } TextureInfo;
-CLR_STATIC_SIZE(TextureInfo, CLR_EITHER(80, 136));
+CLR_STATIC_SIZE(TextureInfo, CLR_EITHER(104, 160));
 
 CLR_PRECISION_END
 #endif
