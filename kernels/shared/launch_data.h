@@ -55,7 +55,8 @@ typedef struct {
                               looks small */
     int film_exponent;        /* the film's unit of colour is 2^film_exponent */
     uint control_group;       /* tiles of which one is a control tile; 0: there are none */
-    uint pad2[2];
+    int window_depth;         /* roulette as a weight window, from this depth on */
+    uint pad2;
     clr_real planar_rim; /* hits of planars up to these |a|, |b| or radius are not at the outline */
     clr_real lens_share; /* of the offset on the lens that is left at the start of a ray */
     clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
