@@ -40,9 +40,7 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     config.HAS_BVH_SPHERES = flat.has_bvh_spheres() ? 1 : 0;
     config.HAS_QUADRICS = flat.quadrics.empty() ? 0 : 1;
     config.HAS_INSTANCES = flat.instances.empty() ? 0 : 1;
-    const bool has_hierarchy =
-        config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0 || config.HAS_QUADRICS != 0;
-    config.BRUTE_FORCE = has_hierarchy && sampling.brute_force && flat.groups.empty() ? 1 : 0;
+    config.BRUTE_FORCE = flat.has_hierarchy() && sampling.brute_force && flat.groups.empty() ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
     config.HAS_UVS = flat.needs_uvs() ? 1 : 0;
     config.RECORD_TABLE = flat.lane_wise_count() <= CLR_TABLE_SIZE ? 1 : 0;
@@ -158,13 +156,13 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
     config.ENVIRONMENT = flat.facts.environment;
 }
 
-/// The window needs two vertices that scatter; a depth has to come before the end of the paths.
+/// Where lanes keep step, short paths have little to save. A depth has to come before their end.
 int roulette_of(const FlatScene &flat, bool has_free_passages) {
     const FrameData &f = flat.frame;
-    constexpr int least_window_depth = 3;
+    const int short_path = flat.has_hierarchy() ? 2 : 10;
     if (flat.facts.shows_depth)
         return CLR_ROULETTE_NONE;
-    if (flat.facts.weight_window && f.max_depth >= least_window_depth)
+    if (flat.facts.weight_window && f.max_depth > short_path)
         return CLR_ROULETTE_WINDOW;
     return f.rr_depth < f.max_depth || has_free_passages ? CLR_ROULETTE_DEPTH : CLR_ROULETTE_NONE;
 }

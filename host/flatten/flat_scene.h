@@ -78,6 +78,9 @@ struct FlatScene {
     [[nodiscard]] std::size_t lane_wise_count() const {
         return static_cast<std::size_t>(facts.sphere_count) + planars.size();
     }
+    [[nodiscard]] bool has_hierarchy() const {
+        return triangle_count > 0 || has_bvh_spheres() || !quadrics.empty();
+    }
     [[nodiscard]] bool has_bvh_spheres() const {
         return spheres.size() > static_cast<std::size_t>(facts.sphere_count);
     }
