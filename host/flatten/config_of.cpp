@@ -137,6 +137,9 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
         case CLR_LIGHT_DIRECTIONAL:
             config.HAS_DIRECTIONAL_LIGHTS = 1;
             break;
+        case CLR_LIGHT_SUN:
+            config.HAS_SUN = 1;
+            break;
         case CLR_LIGHT_SPHERE:
             config.HAS_SPHERE_LIGHTS = 1;
             break;
@@ -154,6 +157,7 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
     config.SHADOW_FREE_COUNT = flat.frame.shadow_free_distance > 0 ? flat.facts.large_count : 0;
     config.LIGHT_SAMPLES = flat.facts.light_samples;
     config.ENVIRONMENT = flat.facts.environment;
+    config.HAS_SKY = flat.facts.has_sky ? 1 : 0;
 }
 
 /// Where lanes keep step, short paths have little to save. A depth has to come before their end.

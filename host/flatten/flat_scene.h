@@ -45,6 +45,7 @@ struct SceneFacts {
     int shadowless_count = 0; ///< the last so many planars never come before a light
     int planar_axes = 0;      ///< as PLANAR_AXES
     int environment = CLR_ENVIRONMENT_NONE;
+    bool has_sky = false;  ///< as HAS_SKY
     int light_samples = 1; ///< as LIGHT_SAMPLES
     int filter_border = 0; ///< pixels around its own that a sample reaches
     Strategy strategy = Strategy::mis;
