@@ -518,6 +518,10 @@ void check_combination(const Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.spp && *options.spp < least_test_samples)
         refuse(fmt::format("test takes at least {} samples, -s allows {}", least_test_samples,
                            *options.spp));
+    if (options.command == Command::test && options.stop.any())
+        refuse("test decides itself when it is done, it excludes --time and --target-error");
+    if (options.stop.any() && !raw.profile.empty())
+        refuse("--profile excludes --time and --target-error: it shows every sample once");
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
@@ -549,6 +553,7 @@ ParseResult parse_options(int argc, const char *const *argv) {
     app.footer(examples);
     add_picture_options(app, options, raw);
     add_sampling_options(app, options, raw);
+    add_stop_options(app, options.stop);
     add_run_options(app, options, raw);
     const CLI::App *compare = add_compare(app, options.compare);
     const CLI::App *test = add_test(app, options, raw);
