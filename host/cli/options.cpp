@@ -234,6 +234,7 @@ struct RawOptions {
     std::string light_samples = "auto";
     std::string rr_depth;
     std::string strategy = "mis";
+    std::string specular_connections = "auto";
     std::string profile;
     std::string max_memory;
     std::string effect = "1%";
@@ -319,6 +320,12 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "sampling alone (default: mis)")
         ->type_name("NAME")
         ->check(one_of({"mis", "light", "bsdf"}))
+        ->group(group);
+    app.add_option("--specular-connections", raw.specular_connections,
+                   "Light sampling over mirrors and through balls of glass: auto, where a scene\n"
+                   "has them, or off (default: auto)")
+        ->type_name("WHEN")
+        ->check(one_of({"auto", "off"}))
         ->group(group);
     app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
         ->type_name("WHICH")
@@ -464,6 +471,7 @@ void finish_sampling(SamplingOptions &sampling, const RawOptions &raw) {
                                                  : Strategy::mis;
     sampling.independent_sampler = raw.sampler == "independent";
     sampling.brute_force = raw.accel == "none";
+    sampling.specular_connections = raw.specular_connections == "auto";
     for (const std::string &name : raw.generic) {
         if (name == "all")
             sampling.forced_features = all_features();

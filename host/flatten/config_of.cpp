@@ -171,6 +171,17 @@ int roulette_of(const FlatScene &flat, bool has_free_passages) {
     return f.rr_depth < f.max_depth || has_free_passages ? CLR_ROULETTE_DEPTH : CLR_ROULETTE_NONE;
 }
 
+void set_connectors(const FlatScene &flat, KernelConfig &config) {
+    const auto has_kind = [&](uint kind) {
+        return any(flat.specular_connectors,
+                   [=](const SpecularConnector &c) { return c.kind == kind; });
+    };
+    config.SPECULAR_CONNECTORS = static_cast<int>(flat.specular_connectors.size());
+    config.CONNECTS_GLASS = has_kind(CLR_CONNECT_REFRACTION);
+    config.CONNECTS_SPHERES = config.CONNECTS_GLASS | has_kind(CLR_CONNECT_REFLECTION);
+    config.CONNECTS_PLANES = has_kind(CLR_CONNECT_PLANE);
+}
+
 void set_integrator(const FlatScene &flat, const SamplingOptions &sampling, KernelConfig &config) {
     const FrameData &f = flat.frame;
     config.INTEGRATOR = flat.facts.shows_depth ? CLR_INTEGRATOR_DEPTH : CLR_INTEGRATOR_PATH;
@@ -231,6 +242,7 @@ KernelConfig config_of(const FlatScene &flat, const SamplingOptions &sampling,
     set_geometry(flat, sampling, config);
     set_materials(flat, config);
     set_lights(flat, config);
+    set_connectors(flat, config);
     set_integrator(flat, sampling, config);
     set_camera(flat, config);
     force_features(sampling.forced_features, config);

@@ -11,6 +11,7 @@
 #include "shared/quadric.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
+#include "shared/specular_connector.h"
 
 #include <array>
 #include <cstddef>

@@ -75,6 +75,9 @@ void flatten_lights(Flattening &work);
 /// The alpha of camera rays that leave the scene for an environment.
 clr_real environment_alpha(const Integrator &integrator);
 
+/// The ways of light over mirrors and through glass; asked when all else is flattened.
+void flatten_specular_connectors(Flattening &work);
+
 /// The environment: a constant one, or a map with its table, of which only the probability of its
 /// light is left to fill. `power` becomes the integral over all directions of the luminance that
 /// light sampling goes by, and is left alone without a map.
