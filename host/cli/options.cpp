@@ -85,6 +85,15 @@ CLI::Validator one_of(const std::vector<std::string> &words) {
             ""};
 }
 
+/// A check for CLI11: the word auto, or what another check accepts.
+CLI::Validator auto_or(const CLI::Validator &other) {
+    return {[other](std::string &text) {
+                std::string fault = text == "auto" ? "" : other(text);
+                return fault.empty() ? fault : fault + ", or auto";
+            },
+            ""};
+}
+
 /// Bytes, or with K, M, G or T behind the number times 1024, 1024^2 and so on, as in 512M, 1.5GiB.
 std::optional<std::uint64_t> parse_size(const std::string &text) {
     constexpr std::string_view units = "KMGT";
@@ -223,6 +232,7 @@ struct RawOptions {
     std::string accel = "bvh";
     std::string sampler = "sobol";
     std::string light_samples = "auto";
+    std::string rr_depth;
     std::string strategy = "mis";
     std::string specular_connections = "auto";
     std::string profile;
@@ -281,9 +291,11 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("N")
         ->check(whole_number(-1, max_int))
         ->group(group);
-    app.add_option("--rr-depth", options.rr_depth, "Depth from which roulette ends paths")
+    app.add_option("--rr-depth", raw.rr_depth,
+                   "Depth from which roulette ends paths, or auto: by what they carry, from the\n"
+                   "second diffuse surface on, which is the default where the scene states none")
         ->type_name("N")
-        ->check(whole_number(1, max_int))
+        ->check(auto_or(whole_number(1, max_int)))
         ->group(group);
     app.add_option("--seed", options.seed, "Another seed, other noise")
         ->type_name("N")
@@ -473,6 +485,9 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (!raw.resolution.empty())
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
+    options.weight_window = raw.rr_depth == "auto";
+    if (!raw.rr_depth.empty() && !options.weight_window)
+        options.rr_depth = parse_number<int>(raw.rr_depth);
     finish_sampling(options.sampling, raw);
     options.double_precision = raw.precision == "double";
     if (!raw.max_memory.empty())
@@ -511,6 +526,10 @@ void check_combination(const Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.spp && *options.spp < least_test_samples)
         refuse(fmt::format("test takes at least {} samples, -s allows {}", least_test_samples,
                            *options.spp));
+    if (options.command == Command::test && options.stop.any())
+        refuse("test decides itself when it is done, it excludes --time and --target-error");
+    if (options.stop.any() && !raw.profile.empty())
+        refuse("--profile excludes --time and --target-error: it shows every sample once");
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
@@ -542,6 +561,7 @@ ParseResult parse_options(int argc, const char *const *argv) {
     app.footer(examples);
     add_picture_options(app, options, raw);
     add_sampling_options(app, options, raw);
+    add_stop_options(app, options.stop);
     add_run_options(app, options, raw);
     const CLI::App *compare = add_compare(app, options.compare);
     const CLI::App *test = add_test(app, options, raw);

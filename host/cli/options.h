@@ -1,6 +1,7 @@
 #pragma once
 /// The command line: what it may say, checked completely, before anything else runs.
 
+#include "cli/stop_options.h"
 #include "config/sampling_options.h"
 
 #include <cstdint>
@@ -45,6 +46,7 @@ struct Options {
     std::optional<Resolution> resolution;
     std::optional<int> max_depth; ///< -1: no limit, as in a scene file
     std::optional<int> rr_depth;
+    bool weight_window = false; ///< roulette is one, even where the scene states an rr_depth
     std::optional<std::uint32_t> seed;
     int lanes = 0;             ///< 1, 4, 8 or 16; 0: as wide as the device
     std::optional<int> sensor; ///< of the scene's sensors, counted from 0
@@ -52,6 +54,7 @@ struct Options {
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
     SamplingOptions sampling;
+    StopOptions stop;
     bool double_precision = false;           ///< --precision double
     std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together
     bool check = false;
