@@ -67,6 +67,8 @@ void apply_options(const cli::Options &options, Scene &scene) {
         scene.sample_count = max_sample_count;
     if (options.max_depth)
         scene.integrator.max_depth = *options.max_depth;
+    if (options.weight_window)
+        scene.integrator.rr_depth.reset();
     if (options.rr_depth)
         scene.integrator.rr_depth = *options.rr_depth;
     if (options.resolution) {

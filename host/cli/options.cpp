@@ -85,6 +85,15 @@ CLI::Validator one_of(const std::vector<std::string> &words) {
             ""};
 }
 
+/// A check for CLI11: the word auto, or what another check accepts.
+CLI::Validator auto_or(const CLI::Validator &other) {
+    return {[other](std::string &text) {
+                std::string fault = text == "auto" ? "" : other(text);
+                return fault.empty() ? fault : fault + ", or auto";
+            },
+            ""};
+}
+
 /// Bytes, or with K, M, G or T behind the number times 1024, 1024^2 and so on, as in 512M, 1.5GiB.
 std::optional<std::uint64_t> parse_size(const std::string &text) {
     constexpr std::string_view units = "KMGT";
@@ -223,7 +232,9 @@ struct RawOptions {
     std::string accel = "bvh";
     std::string sampler = "sobol";
     std::string light_samples = "auto";
+    std::string rr_depth;
     std::string strategy = "mis";
+    std::string specular_connections = "auto";
     std::string profile;
     std::string max_memory;
     std::string effect = "1%";
@@ -280,9 +291,11 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("N")
         ->check(whole_number(-1, max_int))
         ->group(group);
-    app.add_option("--rr-depth", options.rr_depth, "Depth from which roulette ends paths")
+    app.add_option("--rr-depth", raw.rr_depth,
+                   "Depth from which roulette ends paths, or auto: by what they carry, from the\n"
+                   "second diffuse surface on, which is the default where the scene states none")
         ->type_name("N")
-        ->check(whole_number(1, max_int))
+        ->check(auto_or(whole_number(1, max_int)))
         ->group(group);
     app.add_option("--seed", options.seed, "Another seed, other noise")
         ->type_name("N")
@@ -307,6 +320,12 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "sampling alone (default: mis)")
         ->type_name("NAME")
         ->check(one_of({"mis", "light", "bsdf"}))
+        ->group(group);
+    app.add_option("--specular-connections", raw.specular_connections,
+                   "Light sampling over mirrors and through balls of glass: auto, where a scene\n"
+                   "has them, or off (default: auto)")
+        ->type_name("WHEN")
+        ->check(one_of({"auto", "off"}))
         ->group(group);
     app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
         ->type_name("WHICH")
@@ -452,6 +471,7 @@ void finish_sampling(SamplingOptions &sampling, const RawOptions &raw) {
                                                  : Strategy::mis;
     sampling.independent_sampler = raw.sampler == "independent";
     sampling.brute_force = raw.accel == "none";
+    sampling.specular_connections = raw.specular_connections == "auto";
     for (const std::string &name : raw.generic) {
         if (name == "all")
             sampling.forced_features = all_features();
@@ -465,6 +485,9 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (!raw.resolution.empty())
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
+    options.weight_window = raw.rr_depth == "auto";
+    if (!raw.rr_depth.empty() && !options.weight_window)
+        options.rr_depth = parse_number<int>(raw.rr_depth);
     finish_sampling(options.sampling, raw);
     options.double_precision = raw.precision == "double";
     if (!raw.max_memory.empty())

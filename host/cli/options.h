@@ -47,6 +47,7 @@ struct Options {
     std::optional<Resolution> resolution;
     std::optional<int> max_depth; ///< -1: no limit, as in a scene file
     std::optional<int> rr_depth;
+    bool weight_window = false; ///< roulette is one, even where the scene states an rr_depth
     std::optional<std::uint32_t> seed;
     int lanes = 0;             ///< 1, 4, 8 or 16; 0: as wide as the device
     std::optional<int> sensor; ///< of the scene's sensors, counted from 0

@@ -28,7 +28,10 @@ ShapeTest test_of(const Shape &shape, const Flattening &work) {
     case ShapeKind::rectangle:
         return work.rectangles_in_bvh ? ShapeTest::triangles : ShapeTest::planar;
     case ShapeKind::disk:
-        return ShapeTest::planar;
+        return work.disks_in_bvh ? ShapeTest::quadric : ShapeTest::planar;
+    case ShapeKind::ellipsoid:
+    case ShapeKind::cylinder:
+        return ShapeTest::quadric;
     case ShapeKind::mesh:
         break;
     }

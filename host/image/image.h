@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace clrender {
@@ -38,6 +39,10 @@ struct Image {
 /// 2^28 pixels. Throws InputError with `referrer`'s place in front of what is wrong with the file
 /// if `referrer` has a file name, else with the image's own name.
 Image read_image(const std::string &path, const SourceLocation &referrer = {}, bool raw = false);
+
+/// The same of `bytes` in memory, which `name` says where they are from.
+Image decode_image(std::string_view bytes, const std::string &name,
+                   const SourceLocation &referrer = {}, bool raw = false);
 
 /// One named 32-bit float plane set of an EXR file: `name` is "" for the main layer (channels
 /// R G B [A], X Y Z [A] or Y [A]), else the layer prefix ("variance" gives variance.R ...).

@@ -18,8 +18,8 @@ void read_path(Properties &properties, Integrator &integrator) {
     integrator.kind = IntegratorKind::path;
     integrator.max_depth =
         static_cast<int>(properties.integer("max_depth", integrator.max_depth, -1, max_count));
-    integrator.rr_depth =
-        static_cast<int>(properties.integer("rr_depth", integrator.rr_depth, 1, max_count));
+    if (properties.has("rr_depth"))
+        integrator.rr_depth = static_cast<int>(properties.integer("rr_depth", 1, 1, max_count));
     integrator.hide_emitters = properties.boolean("hide_emitters", false);
 }
 
@@ -41,7 +41,7 @@ void read_direct(Properties &properties, Integrator &integrator) {
 
 bool is_point_like(const Emitter &emitter) {
     return emitter.kind != EmitterKind::area && emitter.kind != EmitterKind::constant &&
-           emitter.kind != EmitterKind::envmap;
+           emitter.kind != EmitterKind::envmap && emitter.kind != EmitterKind::sunsky;
 }
 
 bool is_smooth(const Bsdf &bsdf) {

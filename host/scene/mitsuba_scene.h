@@ -92,6 +92,7 @@ private:
     // mitsuba_shapes.cpp
     void read_shape(int object);
     void read_sphere(Properties &properties, Shape &shape);
+    void read_cylinder(Properties &properties, Shape &shape);
     void read_mesh_file(Properties &properties, Shape &shape);
     void read_surface(Properties &properties, Shape &shape);
 
@@ -107,6 +108,7 @@ private:
     void read_envmap(Properties &properties, Emitter &emitter);
     // emitter_<kind>.cpp
     void read_spot(Properties &properties, Emitter &emitter);
+    void read_sunsky(Properties &properties, Emitter &emitter);
     void read_directional(Properties &properties, Emitter &emitter);
     void read_projector(Properties &properties, Emitter &emitter);
     /// Fails where the texture `name` of a light is that of a mesh.
@@ -163,6 +165,9 @@ ReconstructionFilter read_filter(const Document &document, int object);
 
 /// Gives a shape from a mesh file the normals that Mitsuba gives it after `to_world`.
 void follow_transform(Shape &shape);
+
+/// Fails where a sphere or a cylinder becomes so thin that float32 would say little of it.
+void check_thickness(const Properties &properties, const Shape &shape);
 
 /// What a light's texture or map is multiplied with; 1 where nothing is stated.
 double read_emitter_scale(Properties &properties);

@@ -162,6 +162,9 @@ TEST_CASE("Values at the edge of what is allowed") {
     CHECK(accept({"x.xml", "-r", "1x1"}).resolution->width == 1);
     CHECK(accept({"x.xml", "--max-depth", "0"}).max_depth == 0);
     CHECK(accept({"x.xml", "--rr-depth", "1"}).rr_depth == 1);
+    CHECK_FALSE(accept({"x.xml", "--rr-depth", "1"}).weight_window);
+    CHECK(accept({"x.xml", "--rr-depth", "auto"}).weight_window);
+    CHECK_FALSE(accept({"x.xml", "--rr-depth", "auto"}).rr_depth.has_value());
     CHECK(accept({"x.xml", "--seed", "0"}).seed == 0U);
     CHECK(accept({"x.xml", "--sensor", "2"}).sensor == 2);
     CHECK_FALSE(accept({"x.xml"}).sensor.has_value());
