@@ -259,6 +259,7 @@ Spectrum read_spectrum_file(const std::string &path) {
     std::error_code error;
     if (std::filesystem::file_size(path, error) > max_bytes || error)
         throw InputError({path, 0}, "the file is too large, expected at most 16 MiB");
+    note_input_file(path);
     std::ifstream stream(path);
     Spectrum spectrum;
     std::string text;
