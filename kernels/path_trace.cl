@@ -43,6 +43,9 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
 #if FREE_PASSAGES
     p.passages = p.depth;
 #endif
+#if HIDES_BEHIND_PASSAGES
+    p.straight = p.alive;
+#endif
     p.self = source_none();
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
