@@ -16,7 +16,7 @@
 #include "render/profile.h"
 #include "render/profile_trace.h"
 #include "render/render.h"
-#include "scene/film_border.h"
+#include "scene/limits.h"
 #include "scene/load_scene.h"
 #include "selftest/self_test.h"
 
@@ -54,8 +54,11 @@ int show_devices() {
 
 /// What the command line says overrides what the scene says.
 void apply_options(const cli::Options &options, Scene &scene) {
+    // Rules of the command line take the place of the scene's number of samples.
     if (options.spp)
         scene.sample_count = *options.spp;
+    else if (options.stop.any())
+        scene.sample_count = max_sample_count;
     if (options.max_depth)
         scene.integrator.max_depth = *options.max_depth;
     if (options.weight_window)
@@ -80,14 +83,15 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.batch = options.batch;
     r.tile = options.tile;
     r.kernel_dir = options.kernel_dir;
-    r.with_variance = options.layers.count("variance") != 0;
+    r.target_error = options.stop.error.value_or(0);
+    r.with_variance = options.layers.count("variance") != 0 || options.stop.error;
     r.with_samples = options.layers.count("samples") != 0;
     r.profile = options.profile ? &profile : nullptr;
     r.band_rows = options.band_rows;
     r.preview = options.preview;
-    r.on_progress = [&](double paths) {
+    r.on_progress = [&](const RenderProgress &now) {
         cli::keep_picture();
-        progress.update(paths);
+        progress.update(now);
     };
     r.should_stop = [] { return cli::interrupted() != 0; };
     return r;
@@ -137,6 +141,20 @@ void write_pictures(const cli::Options &options, const std::string &scene,
         outputs.rescue(scene, result.image, about);
 }
 
+/// What writing the pictures will take, from that of a part of them: its middle rows.
+double seconds_to_write(const cli::Options &options, const Image &image) {
+    constexpr int pixels = 1 << 16;
+    const Image part = middle_rows(image, std::max(pixels / image.width, 1));
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::future<void>> writes;
+    for (const std::string &path : options.outputs)
+        writes.push_back(std::async(std::launch::async,
+                                    [&, path] { try_write_image(path, part, options.exposure); }));
+    for (std::future<void> &write : writes)
+        write.get();
+    return seconds_since(start) * image.height / part.height;
+}
+
 int render_command(const cli::Options &options) {
     cli::catch_interrupts();
     Profile profile;
@@ -148,9 +166,12 @@ int render_command(const cli::Options &options) {
     cli::RunTimes times;
     times.parse = seconds_since(start);
     profile.add_phase("parse", start, std::chrono::steady_clock::now());
-    cli::Progress progress(static_cast<double>(sampled_pixels(scene.film)) * scene.sample_count,
-                           scene.sample_count, !options.quiet && !options.check);
-    const RenderOptions how = render_options(options, progress, profile);
+    cli::Progress progress(!options.quiet && !options.check);
+    RenderOptions how = render_options(options, progress, profile);
+    if (options.stop.seconds)
+        how.deadline = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                   std::chrono::duration<double>(*options.stop.seconds));
+    how.seconds_to_write = [&](const Image &image) { return seconds_to_write(options, image); };
     activity = options.check ? "checking " + options.scene : "rendering " + options.scene;
     if (options.check) {
         if (!options.stats.empty() || options.profile)
@@ -183,6 +204,8 @@ int render_command(const cli::Options &options) {
     profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
     log::info(cli::summary(result, times, outputs.written()));
+    if (options.stop.any())
+        log::info(cli::reason_line(result, times));
 
     activity = "writing what is known of the run";
     if (!options.stats.empty())
@@ -206,8 +229,7 @@ int test_command(const cli::Options &options) {
     scene.sample_count = options.spp.value_or(cli::default_test_samples);
     check_outputs(options, scene);
     const std::string name = scene.name;
-    cli::Progress progress(static_cast<double>(sampled_pixels(scene.film)) * scene.sample_count,
-                           scene.sample_count, !options.quiet);
+    cli::Progress progress(!options.quiet);
     RenderOptions how = render_options(options, progress, profile);
     how.spp = scene.sample_count;
     activity = "testing " + options.scene;

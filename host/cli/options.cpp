@@ -234,6 +234,7 @@ struct RawOptions {
     std::string light_samples = "auto";
     std::string rr_depth;
     std::string strategy = "mis";
+    std::string specular_connections = "auto";
     std::string profile;
     std::string max_memory;
     std::string effect = "1%";
@@ -319,6 +320,12 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "sampling alone (default: mis)")
         ->type_name("NAME")
         ->check(one_of({"mis", "light", "bsdf"}))
+        ->group(group);
+    app.add_option("--specular-connections", raw.specular_connections,
+                   "Light sampling over mirrors and through balls of glass: auto, where a scene\n"
+                   "has them, or off (default: auto)")
+        ->type_name("WHEN")
+        ->check(one_of({"auto", "off"}))
         ->group(group);
     app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
         ->type_name("WHICH")
@@ -464,6 +471,7 @@ void finish_sampling(SamplingOptions &sampling, const RawOptions &raw) {
                                                  : Strategy::mis;
     sampling.independent_sampler = raw.sampler == "independent";
     sampling.brute_force = raw.accel == "none";
+    sampling.specular_connections = raw.specular_connections == "auto";
     for (const std::string &name : raw.generic) {
         if (name == "all")
             sampling.forced_features = all_features();
@@ -518,6 +526,10 @@ void check_combination(const Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.spp && *options.spp < least_test_samples)
         refuse(fmt::format("test takes at least {} samples, -s allows {}", least_test_samples,
                            *options.spp));
+    if (options.command == Command::test && options.stop.any())
+        refuse("test decides itself when it is done, it excludes --time and --target-error");
+    if (options.stop.any() && !raw.profile.empty())
+        refuse("--profile excludes --time and --target-error: it shows every sample once");
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
@@ -549,6 +561,7 @@ ParseResult parse_options(int argc, const char *const *argv) {
     app.footer(examples);
     add_picture_options(app, options, raw);
     add_sampling_options(app, options, raw);
+    add_stop_options(app, options.stop);
     add_run_options(app, options, raw);
     const CLI::App *compare = add_compare(app, options.compare);
     const CLI::App *test = add_test(app, options, raw);

@@ -1,6 +1,7 @@
 #pragma once
 /// The command line: what it may say, checked completely, before anything else runs.
 
+#include "cli/stop_options.h"
 #include "config/sampling_options.h"
 
 #include <cstdint>
@@ -53,6 +54,7 @@ struct Options {
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
     SamplingOptions sampling;
+    StopOptions stop;
     bool double_precision = false;           ///< --precision double
     std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together
     bool check = false;

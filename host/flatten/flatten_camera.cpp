@@ -45,6 +45,10 @@ void flatten_integrator(Flattening &work) {
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
     f.rr_depth = integrator.rr_depth.value_or(window_end_depth);
     flat.facts.weight_window = !integrator.rr_depth && integrator.kind == IntegratorKind::path;
+    // Lanes whose rays walk no tree keep step, and one that ends early only waits for the others.
+    // Deep in the scene nearly all of them end.
+    constexpr int depth_in_step = 6;
+    f.window_depth = flat.has_hierarchy() ? 0 : depth_in_step;
     flat.facts.free_passages = integrator.skips_passages && integrator.max_depth >= 0;
     if (f.max_depth > max_depth_without_roulette || flat.facts.free_passages)
         f.rr_depth = std::min(f.rr_depth, max_depth_without_roulette);

@@ -361,6 +361,9 @@ void flatten_lights(Flattening &work) {
         case EmitterKind::envmap:
             flatten_environment(work, emitter, &map_power);
             break;
+        case EmitterKind::sunsky:
+            flatten_sunsky(work, emitter, list, &map_power);
+            break;
         }
     }
     if (flat.facts.environment == CLR_ENVIRONMENT_MAP)

@@ -32,6 +32,11 @@ public:
     /// control tiles become zero.
     void forget();
 
+    /// Keeps the sums as they are, in as much memory again, for restore(). Throws DeviceError.
+    void set_aside(const cl::Context &context);
+    /// The sums, the counters and the control tiles become what they were then.
+    void restore();
+
     /// Binds the buffers to arguments from `index` on; returns the index behind them.
     cl_uint bind(cl::Kernel &kernel, cl_uint index) const;
     [[nodiscard]] FilmWindow window() const;
@@ -53,7 +58,13 @@ private:
     cl::CommandQueue queue_;
     PictureTiles tiles_;
     std::size_t film_bytes_ = 0, counter_bytes_ = 0, control_bytes_ = 0;
-    cl::Buffer film_, counters_, control_;
+    struct Sums {
+        cl::Buffer film, counters, control;
+    };
+    [[nodiscard]] Sums make_sums(const cl::Context &context) const;
+    void copy(const Sums &from, const Sums &to) const;
+
+    Sums sums_, aside_;
     Band band_;
     std::size_t kept_end_row_ = 0; ///< end of the rows in the buffer whose sums go on
     bool unused_ = false;          ///< the first band has room and zeros already

@@ -104,6 +104,8 @@ public:
     [[nodiscard]] int samples_of(const Launch &launch) const {
         return samples(launch.first_block, launch.end_block);
     }
+    /// Whether launches of the first block are still to come.
+    [[nodiscard]] bool is_in_first_pass() const { return first_block_ == 0 && !done(); }
     /// How long the first pass is expected to take in all; 0 before any launch has ended.
     [[nodiscard]] double seconds_of_first_pass() const;
     /// Samples that every pixel of all tiles has, by the launches that have ended.

@@ -14,7 +14,9 @@
 
 #include <chrono>
 #include <future>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace clrender::inline CLR_PRECISION {
@@ -46,10 +48,20 @@ public:
     void upload(RenderStats &stats);
     /// Renders `spp` samples a pixel into `picture`; true if it was stopped before that.
     bool render(int spp, Picture &picture, RenderStats &stats);
+    enum class Ended { done, stopped, slow };
+    static constexpr double no_limit = std::numeric_limits<double>::infinity();
     /// Goes on from `done` samples a pixel, all of which are whole blocks, to `spp` of them; only
-    /// for pictures in one band, and only with no call of render(). True if it was stopped, which
-    /// leaves tiles with different numbers of samples: it cannot go on then.
-    bool advance(int done, int spp, Picture &picture, RenderStats &stats);
+    /// for pictures in one band, and only with no call of render(). Where `spp` lies within a block
+    /// the next call begins with the same `done`: what was rendered beyond it is forgotten.
+    /// Stopped, tiles have different numbers of samples: it cannot go on then. Ends as `slow`, from
+    /// where it can go on, where the first pass turns out to take longer than `slow_seconds`.
+    Ended go_on(int done, int spp, double slow_seconds = no_limit);
+    /// Takes the film as go_on() has left it over.
+    void read(Picture &picture, RenderStats &stats);
+    /// Samples that every pixel has.
+    [[nodiscard]] int samples_of_all() const;
+    /// Paths that have been traced.
+    [[nodiscard]] double paths() const { return paths_done_; }
     /// Whether the picture is rendered in one band.
     [[nodiscard]] bool in_one_piece() const { return bands_.size() == 1; }
     [[nodiscard]] const ControlLayout &control_layout() const { return control_; }
@@ -66,12 +78,10 @@ private:
         cl::Event event;
         std::chrono::steady_clock::time_point start;
     };
-    enum class Ended { done, stopped, slow };
-
     Ended preview(int spp, Picture &picture, RenderStats &stats);
-    Ended render_bands(int spp, bool may_be_slow, Picture &picture, RenderStats &stats);
+    Ended render_bands(int spp, double slow_seconds, Picture &picture, RenderStats &stats);
     void take(Picture &picture, const Band &band, const LaunchPlan &plan);
-    Ended run(LaunchPlan &plan, bool may_be_slow);
+    Ended run(LaunchPlan &plan, double slow_seconds);
     void enqueue(const LaunchPlan::Launch &launch, cl::Event *event);
     void finish(Pending &pending, LaunchPlan &plan);
     LaunchPlan plan_of(const Band &band, int spp, int first_block = 0);
@@ -99,6 +109,8 @@ private:
     bool has_samples_ = false;                  ///< a launch has ended
     double seconds_read_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};
+    std::optional<LaunchPlan> last_plan_; ///< of go_on()
+    bool is_beyond_ = false; ///< the film has samples of a part of a block, which go_on() has added
 };
 
 } // namespace clrender::inline CLR_PRECISION

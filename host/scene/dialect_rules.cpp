@@ -50,6 +50,8 @@ const TypeRule type_rules[] = {
     {before_2, "bsdf", "roughmetal", "roughconductor", ""},
     {before_2, "bsdf", "roughglass", "roughdielectric", ""},
     {before_2, "bsdf", "bump", "bumpmap", ""},
+    {before_2, "emitter", "sky", "sunsky", ""},
+    {before_2, "emitter", "sun", "sunsky", ""},
     {before_2, "texture", "ldrtexture", "bitmap", ""},
     {before_2, "texture", "exrtexture", "bitmap", ""},
     {all, nullptr, nullptr, nullptr, nullptr},
@@ -87,6 +89,9 @@ const DroppedRule dropped_rules[] = {
      "texels are linear or sRGB, as \"raw\" says"},
     {before_2, "bsdf", "conductor roughconductor roughmetal", "ext_eta", "1 1.000277 air vacuum",
      "the indices of metals are relative to vacuum"},
+    {before_2, "emitter", "sky sun sunsky", "resolution", any, ""},
+    {before_2, "emitter", "sky sun sunsky", "stretch", "1", "the sky ends at the horizon"},
+    {before_2, "emitter", "sky sun sunsky", "extend", "false", "the sky ends at the horizon"},
     {before_2, "emitter", "envmap", "cache", any, ""},
     {before_2, "emitter", "envmap", "gamma", "-1 0 1 2.2",
      "the map's pixels are taken as its format has them"},
@@ -226,6 +231,8 @@ void upgrade_forms(pugi::xml_node object, const std::string &tag, const std::str
         upgrade_wrap_modes(object, file);
         if (is_listed("bitmap ldrtexture exrtexture", type))
             upgrade_gamma(object, file);
+    } else if ((tag == "emitter" || tag == "luminaire") && is_listed("sky sun sunsky", type)) {
+        upgrade_sky(object, type, file);
     } else if (tag == "camera") {
         upgrade_camera(object, file);
     } else if (tag == "film") {

@@ -83,8 +83,8 @@ public:
         if (stride_ == 0)
             stride_ = size;
         if (stride_ < size)
-            throw document.error(place, fmt::format("a stride of {} bytes, expected at least {}",
-                                                    stride_, size));
+            throw document.error(
+                place, fmt::format("a stride of {} bytes, expected at least {}", stride_, size));
         if (count > 0 && (offset > bytes_.size() || size > bytes_.size() - offset ||
                           count - 1 > (bytes_.size() - offset - size) / stride_))
             throw document.error(
@@ -111,8 +111,8 @@ template <typename Take>
 void for_each_number(const Document &document, const tinygltf::Accessor &accessor,
                      std::size_t components, const std::string &place, const Take &take) {
     if (accessor.bufferView >= 0) {
-        const tinygltf::BufferView &view = element(document, document.model.bufferViews,
-                                                   accessor.bufferView, "bufferView", place);
+        const tinygltf::BufferView &view =
+            element(document, document.model.bufferViews, accessor.bufferView, "bufferView", place);
         const Elements elements(document, accessor.bufferView, accessor.byteOffset, view.byteStride,
                                 accessor.count, accessor.componentType, components, place);
         for (std::size_t i = 0; i < accessor.count; ++i)
@@ -141,8 +141,8 @@ void for_each_number(const Document &document, const tinygltf::Accessor &accesso
     for (std::size_t i = 0; i < count; ++i) {
         const auto target = static_cast<std::size_t>(indices.at(i, 0));
         if (target >= accessor.count)
-            throw document.error(place, fmt::format("sparse index {}, of {} elements", target,
-                                                    accessor.count));
+            throw document.error(
+                place, fmt::format("sparse index {}, of {} elements", target, accessor.count));
         for (std::size_t c = 0; c < components; ++c)
             take(target, c, values.at(i, c));
     }
@@ -201,20 +201,19 @@ Numbers read_numbers(const Document &document, int index, int least, int most,
                                               most > least ? fmt::format(" to VEC{}", most) : ""));
     numbers.values.resize(accessor.count * numbers.components);
     std::size_t bad = 0;
-    for_each_number(document, accessor, numbers.components, own,
-                    [&](std::size_t i, std::size_t c, double value) {
-                        float result = accessor.normalized
-                                           ? normalised(value, accessor.componentType)
-                                           : static_cast<float>(value);
-                        if (!std::isfinite(result)) {
-                            if (!repairs)
-                                throw document.error(
-                                    own, fmt::format("element {} is not finite", i));
-                            ++bad;
-                            result = 0;
-                        }
-                        numbers.values[i * numbers.components + c] = result;
-                    });
+    for_each_number(
+        document, accessor, numbers.components, own,
+        [&](std::size_t i, std::size_t c, double value) {
+            float result = accessor.normalized ? normalised(value, accessor.componentType)
+                                               : static_cast<float>(value);
+            if (!std::isfinite(result)) {
+                if (!repairs)
+                    throw document.error(own, fmt::format("element {} is not finite", i));
+                ++bad;
+                result = 0;
+            }
+            numbers.values[i * numbers.components + c] = result;
+        });
     if (bad > 0)
         document.warn(own, fmt::format("{} values are not finite, 0 instead", bad));
     return numbers;

@@ -56,9 +56,8 @@ void read_camera(const Document &document, const PlacedNode &node, Scene &scene)
         const tinygltf::PerspectiveCamera &p = camera.perspective;
         sensor.fov = glm::degrees(positive(document, place, "yfov", p.yfov));
         if (!(sensor.fov < 180))
-            throw document.error(
-                place, fmt::format("yfov is {:g}, expected radians below {:.4f}", p.yfov,
-                                   std::numbers::pi));
+            throw document.error(place, fmt::format("yfov is {:g}, expected radians below {:.4f}",
+                                                    p.yfov, std::numbers::pi));
         sensor.fov_axis = FovAxis::y;
         if (p.aspectRatio != 0)
             set_aspect(positive(document, place, "aspectRatio", p.aspectRatio), scene.film);
@@ -96,8 +95,8 @@ int light_of(const tinygltf::Node &node) {
 
 void read_light(const Document &document, const PlacedNode &node, int light, Scene &scene) {
     const std::string place = place_of("lights", light);
-    const tinygltf::Light &source = element(document, document.model.lights, light, "light",
-                                            place_of("nodes", node.index));
+    const tinygltf::Light &source =
+        element(document, document.model.lights, light, "light", place_of("nodes", node.index));
     Emitter emitter;
     emitter.where = {document.path, 0};
     Rgb color(1);

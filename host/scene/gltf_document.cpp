@@ -22,18 +22,13 @@ namespace {
 using nlohmann::json;
 
 /// What the readers make something of.
-constexpr std::array known_extensions = {"KHR_draco_mesh_compression",
-                                         "KHR_lights_punctual",
-                                         "KHR_materials_clearcoat",
-                                         "KHR_materials_emissive_strength",
-                                         "KHR_materials_ior",
-                                         "KHR_materials_sheen",
-                                         "KHR_materials_specular",
-                                         "KHR_materials_transmission",
-                                         "KHR_materials_unlit",
-                                         "KHR_materials_volume",
-                                         "KHR_mesh_quantization",
-                                         "KHR_texture_transform"};
+constexpr std::array known_extensions = {
+    "KHR_draco_mesh_compression", "KHR_lights_punctual",
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_sheen",
+    "KHR_materials_specular",     "KHR_materials_transmission",
+    "KHR_materials_unlit",        "KHR_materials_volume",
+    "KHR_mesh_quantization",      "KHR_texture_transform"};
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
     std::uint32_t word = 0;
@@ -60,8 +55,8 @@ Chunks chunks_of(std::string_view bytes, const std::string &path) {
         fail(fmt::format("version {}, expected 2", word_at(bytes, 4)));
     const std::uint64_t length = word_at(bytes, 8);
     if (length > bytes.size())
-        fail(fmt::format("the header promises {} bytes, but the file has {}", length,
-                         bytes.size()));
+        fail(
+            fmt::format("the header promises {} bytes, but the file has {}", length, bytes.size()));
     Chunks chunks;
     chunks.is_binary = true;
     for (std::uint64_t at = 12; at + 8 <= length;) {
@@ -101,8 +96,7 @@ void check_version(const json &root, const Document &document) {
         throw document.error("asset", "has no version, expected \"2.0\"");
     const std::string least = version("minVersion");
     if (!version("version").starts_with("2.") || (!least.empty() && least != "2.0"))
-        throw document.error("asset", "version " +
-                                          (least.empty() ? version("version") : least) +
+        throw document.error("asset", "version " + (least.empty() ? version("version") : least) +
                                           " of glTF, expected 2.0");
 }
 
@@ -183,10 +177,9 @@ void take_buffers(json &root, const Chunks &chunks, Document &document) {
             else
                 throw document.error(place, "has no URI, expected one");
             if (bytes.size() < length)
-                throw document.error(place,
-                                     fmt::format("states {} bytes, but {} has {}", length,
-                                                 uri.empty() ? "the binary chunk" : "its URI",
-                                                 bytes.size()));
+                throw document.error(
+                    place, fmt::format("states {} bytes, but {} has {}", length,
+                                       uri.empty() ? "the binary chunk" : "its URI", bytes.size()));
             bytes.resize(length);
             document.buffers.push_back(std::move(bytes));
         }

@@ -14,10 +14,12 @@ namespace clrender::gltf {
 
 /// An image of the file: encoded bytes in a buffer view or out of a data URI, or a file.
 struct ImageSource {
-    std::string file;               ///< path of a file, or ""
-    std::string data;               ///< bytes of a data URI, where there is no file
-    int buffer_view = -1;           ///< the view that holds the bytes, or -1
-    [[nodiscard]] bool is_there() const { return !file.empty() || !data.empty() || buffer_view >= 0; }
+    std::string file;     ///< path of a file, or ""
+    std::string data;     ///< bytes of a data URI, where there is no file
+    int buffer_view = -1; ///< the view that holds the bytes, or -1
+    [[nodiscard]] bool is_there() const {
+        return !file.empty() || !data.empty() || buffer_view >= 0;
+    }
 };
 
 /// `model` is what tinygltf has read of the JSON text, which was checked before and had buffers,

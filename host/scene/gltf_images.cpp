@@ -26,7 +26,8 @@ Image like(const Image &image, int channels, PixelType type) {
 }
 
 /// The last channel of `image`, as values from 0 to 1 or bytes.
-template <typename T> std::vector<T> last_channel(const std::vector<T> &values, std::size_t stride) {
+template <typename T>
+std::vector<T> last_channel(const std::vector<T> &values, std::size_t stride) {
     std::vector<T> channel;
     channel.reserve(values.size() / stride);
     for (std::size_t i = stride - 1; i < values.size(); i += stride)
@@ -38,7 +39,8 @@ template <typename T> std::vector<T> last_channel(const std::vector<T> &values, 
 
 int Images::source_of(int texture) const {
     const std::string place = place_of("textures", texture);
-    const int source = element(document_, document_.model.textures, texture, "texture", place).source;
+    const int source =
+        element(document_, document_.model.textures, texture, "texture", place).source;
     if (source >= 0)
         (void)element(document_, document_.images, source, "image", place);
     return source;
@@ -71,9 +73,8 @@ void Images::want(const TextureUse &use, bool raw) {
 void Images::want(const Material &material) {
     want(material.base_texture, false);
     want(material.emission_texture, false);
-    for (const TextureUse &use :
-         {material.metallic_roughness, material.normal, material.transmission_texture,
-          material.clearcoat_texture})
+    for (const TextureUse &use : {material.metallic_roughness, material.normal,
+                                  material.transmission_texture, material.clearcoat_texture})
         want(use, true);
 }
 

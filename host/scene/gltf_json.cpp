@@ -94,10 +94,10 @@ json parse_json(std::string_view text, const std::string &path, bool has_lines) 
     if (const std::string reason = claim_memory(4 * text.size() + bytes_per_value * checker.values);
         !reason.empty())
         throw InputError({path, 0}, "its JSON text " + reason);
-    json value = json::parse(text.begin(), text.end(),
-                             [](int, json::parse_event_t event, json &parsed) {
-                                 return event != json::parse_event_t::key || parsed != "extras";
-                             });
+    json value =
+        json::parse(text.begin(), text.end(), [](int, json::parse_event_t event, json &parsed) {
+            return event != json::parse_event_t::key || parsed != "extras";
+        });
     if (!value.is_object())
         throw InputError({path, 0}, "the JSON text is no object, expected a glTF file");
     return value;

@@ -76,8 +76,8 @@ private:
     std::string place_;
 };
 
-Members extension(const Document &document, const ExtensionMap &extensions,
-                  const std::string &name, const std::string &place) {
+Members extension(const Document &document, const ExtensionMap &extensions, const std::string &name,
+                  const std::string &place) {
     const auto found = extensions.find(name);
     return {document, found == extensions.end() ? nullptr : &found->second, place + "." + name};
 }
@@ -137,11 +137,9 @@ TextureUse texture_use(const Document &document, const Members &members, const c
     if (index < 0)
         throw document.error(place, "has no index, expected that of a texture");
     if (const Value *extensions = own.find("extensions");
-        extensions != nullptr && extensions->IsObject() &&
-        extensions->Has("KHR_texture_transform"))
-        apply_transform(
-            document,
-            Members(document, &extensions->Get("KHR_texture_transform"), place), use);
+        extensions != nullptr && extensions->IsObject() && extensions->Has("KHR_texture_transform"))
+        apply_transform(document,
+                        Members(document, &extensions->Get("KHR_texture_transform"), place), use);
     return use;
 }
 
@@ -164,8 +162,8 @@ void read_transmission(const Document &document, const ExtensionMap &extensions,
     const Members ior = extension(document, extensions, "KHR_materials_ior", material.place);
     material.ior = ior.number("ior", 1.5, 0, 100);
     if (material.ior != 0 && material.ior < 1)
-        throw document.error(ior.place(), fmt::format("ior is {:g}, expected 0 or at least 1",
-                                                      material.ior));
+        throw document.error(ior.place(),
+                             fmt::format("ior is {:g}, expected 0 or at least 1", material.ior));
     if (material.ior == 0) {
         document.warn(ior.place(), "ior 0, a mirror's reflectance over a dielectric, is not "
                                    "supported, 1.5 is taken");
@@ -182,8 +180,7 @@ void read_coats(const Document &document, const ExtensionMap &extensions, Materi
         specular.find("specularColorTexture") != nullptr)
         document.warn(specular.place(), "textures are ignored, its factors hold everywhere");
 
-    const Members coat =
-        extension(document, extensions, "KHR_materials_clearcoat", material.place);
+    const Members coat = extension(document, extensions, "KHR_materials_clearcoat", material.place);
     material.clearcoat = coat.number("clearcoatFactor", 0, 0, 1);
     material.clearcoat_texture = texture_use(document, coat, "clearcoatTexture");
     material.clearcoat_roughness = coat.number("clearcoatRoughnessFactor", 0, 0, 1);
@@ -196,7 +193,8 @@ void read_coats(const Document &document, const ExtensionMap &extensions, Materi
 
     const Members sheen = extension(document, extensions, "KHR_materials_sheen", material.place);
     material.sheen = sheen.color("sheenColorFactor", Rgb(0), 1);
-    if (sheen.find("sheenColorTexture") != nullptr || sheen.find("sheenRoughnessTexture") != nullptr)
+    if (sheen.find("sheenColorTexture") != nullptr ||
+        sheen.find("sheenRoughnessTexture") != nullptr)
         document.warn(sheen.place(), "textures are ignored, its colour holds everywhere");
 }
 
@@ -208,8 +206,8 @@ AlphaMode alpha_mode_of(const Document &document, const std::string &mode,
         return AlphaMode::mask;
     if (mode == "BLEND")
         return AlphaMode::blend;
-    throw document.error(place, "alphaMode " + mode.substr(0, 40) +
-                                    ", expected OPAQUE, MASK or BLEND");
+    throw document.error(place,
+                         "alphaMode " + mode.substr(0, 40) + ", expected OPAQUE, MASK or BLEND");
 }
 
 /// A factor of the standard, from 0 to 1.

@@ -41,8 +41,8 @@ glm::dmat4 own_matrix(const Document &document, const tinygltf::Node &node,
         const double length = std::hypot(std::hypot(r[0], r[1]), std::hypot(r[2], r[3]));
         if (!(length > 0 && std::isfinite(length)))
             throw document.error(place, "rotation has no length, expected a unit quaternion");
-        matrix *= glm::mat4_cast(
-            glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
+        matrix *=
+            glm::mat4_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
     }
     if (const double *s = numbers(document, node.scale, 3, "scale", place))
         matrix = glm::scale(matrix, glm::dvec3(s[0], s[1], s[2]));
@@ -92,8 +92,8 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
         const Open at = open.back();
         open.pop_back();
         const std::string place = place_of("nodes", at.node);
-        const tinygltf::Node &node = element(document, document.model.nodes, at.node, "node",
-                                             "scene");
+        const tinygltf::Node &node =
+            element(document, document.model.nodes, at.node, "node", "scene");
         if (seen[static_cast<std::size_t>(at.node)])
             throw document.error(place, "is reached twice, expected nodes that are trees");
         seen[static_cast<std::size_t>(at.node)] = true;

@@ -1,12 +1,14 @@
 #include "gltf_primitives.h"
 
 #include "../memory_limit.h"
+#include "gltf_draco.h"
 #include "mesh_normals.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <utility>
 
 namespace clrender::gltf {
@@ -47,7 +49,11 @@ std::vector<Triangle> triangles_of(int mode, std::size_t count, const auto &vert
 }
 
 void read_triangles(const Document &document, const tinygltf::Primitive &source,
-                    Primitive &primitive) {
+                    std::optional<CompressedPrimitive> &compressed, Primitive &primitive) {
+    if (compressed) {
+        primitive.mesh.triangles = std::move(compressed->triangles);
+        return;
+    }
     const std::size_t vertices = primitive.mesh.positions.size();
     std::vector<std::uint32_t> indices;
     if (source.indices >= 0)
@@ -67,7 +73,7 @@ void read_triangles(const Document &document, const tinygltf::Primitive &source,
 /// Unit vectors; those without a direction are 0.
 std::vector<glm::vec3> unit_vectors(const Numbers &numbers) {
     std::vector<glm::vec3> vectors;
-    vectors.reserve(numbers.count());
+    vectors.reserve(numbers.values.size() / 3);
     for (std::size_t i = 0; i < numbers.values.size(); i += 3) {
         const glm::dvec3 n(numbers.values[i], numbers.values[i + 1], numbers.values[i + 2]);
         const double length = glm::length(n);
@@ -76,19 +82,24 @@ std::vector<glm::vec3> unit_vectors(const Numbers &numbers) {
     return vectors;
 }
 
-/// Reads the attribute `name` of as many vertices as there are positions; none where it is not
-/// there.
+/// Reads the attribute `name`, out of the compressed data where it is there; none where it is
+/// not.
 Numbers read_attribute(const Document &document, const tinygltf::Primitive &source,
-                       const std::string &name, int least, int most, const Primitive &primitive) {
+                       const std::string &name, int least, int most, const std::string &place,
+                       std::optional<CompressedPrimitive> &compressed) {
     const int accessor = attribute_of(source, name);
     if (accessor < 0)
         return {};
-    const std::string place = primitive.place + "." + name;
-    Numbers numbers = read_numbers(document, accessor, least, most, place, true);
-    if (numbers.count() != primitive.mesh.positions.size())
-        throw document.error(place, fmt::format("{} elements for {} positions", numbers.count(),
-                                                primitive.mesh.positions.size()));
-    return numbers;
+    const std::string own = place + "." + name;
+    if (compressed && compressed->attributes.count(name) > 0) {
+        Numbers numbers = std::move(compressed->attributes[name]);
+        if (numbers.components < static_cast<std::size_t>(least) ||
+            numbers.components > static_cast<std::size_t>(most))
+            throw document.error(own, fmt::format("{} numbers a vertex, expected {} to {}",
+                                                  numbers.components, least, most));
+        return numbers;
+    }
+    return read_numbers(document, accessor, least, most, own, name != "POSITION");
 }
 
 /// The number at the end of "TEXCOORD_<n>", or -1.
@@ -132,8 +143,8 @@ bool is_mirrored(const Mesh &mesh, const Triangle &t) {
     const glm::dvec2 uv2(mesh.uvs[t[2]] - mesh.uvs[t[0]]);
     double side = 1;
     if (!mesh.normals.empty())
-        side = glm::dot(normal, glm::dvec3(mesh.normals[t[0]] + mesh.normals[t[1]] +
-                                           mesh.normals[t[2]]));
+        side = glm::dot(normal,
+                        glm::dvec3(mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]]));
     return (uv1.x * uv2.y - uv1.y * uv2.x) * side > 0;
 }
 
@@ -155,26 +166,32 @@ Primitive read_primitive(const Document &document, const tinygltf::Primitive &so
         document.warn(place, "has no POSITION and is ignored");
         return primitive;
     }
-    const Numbers positions =
-        read_numbers(document, attribute_of(source, "POSITION"), 3, 3, place + ".POSITION");
-    if (const std::string reason = claim_memory(positions.count() * bytes_per_vertex);
+    auto compressed = decompress(document, source, place);
+    const auto read = [&](const std::string &name, int least, int most) {
+        Numbers numbers = read_attribute(document, source, name, least, most, place, compressed);
+        const std::size_t expected =
+            compressed ? compressed->vertices : primitive.mesh.positions.size();
+        if (!numbers.values.empty() && (compressed || name != "POSITION") &&
+            numbers.count() != expected)
+            throw document.error(place + "." + name, fmt::format("{} elements for {} vertices",
+                                                                 numbers.count(), expected));
+        return numbers;
+    };
+    const Numbers positions = read("POSITION", 3, 3);
+    if (const std::string reason = claim_memory(positions.values.size() / 3 * bytes_per_vertex);
         !reason.empty())
         throw document.error(place, reason);
-    primitive.mesh.positions.reserve(positions.count());
     for (std::size_t i = 0; i < positions.values.size(); i += 3)
         primitive.mesh.positions.emplace_back(positions.values[i], positions.values[i + 1],
                                               positions.values[i + 2]);
-    read_triangles(document, source, primitive);
-    if (attribute_of(source, "NORMAL") >= 0) {
-        primitive.mesh.normals =
-            unit_vectors(read_attribute(document, source, "NORMAL", 3, 3, primitive));
-        if (!primitive.mesh.normals.empty())
-            complete_normals(primitive.mesh);
-    }
+    read_triangles(document, source, compressed, primitive);
+    primitive.mesh.normals = unit_vectors(read("NORMAL", 3, 3));
+    if (!primitive.mesh.normals.empty())
+        complete_normals(primitive.mesh);
     for (const auto &[name, accessor] : source.attributes)
         if (const int set = set_of(name); set >= 0)
-            primitive.coordinates[set] = read_attribute(document, source, name, 2, 2, primitive);
-    primitive.colors = read_attribute(document, source, "COLOR_0", 3, 4, primitive);
+            primitive.coordinates[set] = read(name, 2, 2);
+    primitive.colors = read("COLOR_0", 3, 4);
     clamp(primitive.colors.values);
     if (!source.targets.empty())
         document.warn(place, "morph targets are ignored");
@@ -200,8 +217,7 @@ std::vector<SurfacedMesh> surfaced(const Document &document, Primitive primitive
             numbers.values.resize(2 * mesh.positions.size());
         }
         if (set != surface.set)
-            mesh.attributes.push_back(
-                attribute_of(coordinates_attribute(set), numbers, 0, 2, 3));
+            mesh.attributes.push_back(attribute_of(coordinates_attribute(set), numbers, 0, 2, 3));
         else
             for (std::size_t i = 0; i < numbers.values.size(); i += 2)
                 mesh.uvs.emplace_back(numbers.values[i], numbers.values[i + 1]);
@@ -221,14 +237,13 @@ std::vector<SurfacedMesh> surfaced(const Document &document, Primitive primitive
             mirrored.triangles.assign(middle, mesh.triangles.end());
             mesh.triangles.erase(middle, mesh.triangles.end());
             needs.flips_normals = true;
-            parts.push_back({std::make_shared<const Mesh>(std::move(mirrored)),
-                             surfaces.surface(needs)});
+            parts.push_back(
+                {std::make_shared<const Mesh>(std::move(mirrored)), surfaces.surface(needs)});
         }
     }
     needs.flips_normals = false;
     if (!mesh.triangles.empty())
-        parts.push_back(
-            {std::make_shared<const Mesh>(std::move(mesh)), surfaces.surface(needs)});
+        parts.push_back({std::make_shared<const Mesh>(std::move(mesh)), surfaces.surface(needs)});
     return parts;
 }
 

@@ -13,7 +13,7 @@ namespace clrender::gltf {
 /// The triangles of a primitive, before its material is known.
 struct Primitive {
     int material = -1;
-    Mesh mesh; ///< positions, normals and triangles
+    Mesh mesh;                          ///< positions, normals and triangles
     std::map<int, Numbers> coordinates; ///< TEXCOORD_<n>
     Numbers colors;                     ///< COLOR_0: three or four, or none
     std::string place;

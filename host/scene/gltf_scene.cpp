@@ -39,6 +39,7 @@ public:
     void add_meshes();
     void add_lights();
     void add_sensor(std::optional<int> chosen);
+    void warn_of_passages() const;
 
 private:
     void read_primitives();
@@ -51,9 +52,9 @@ private:
     std::vector<PlacedNode> nodes_;
     Images images_;
     SurfaceMaker surfaces_;
-    std::map<int, std::vector<glm::dmat4>> places_;     ///< by mesh
-    std::map<int, std::vector<Primitive>> primitives_;  ///< by mesh
-    std::map<int, std::vector<SurfacedMesh>> parts_;    ///< by mesh
+    std::map<int, std::vector<glm::dmat4>> places_;    ///< by mesh
+    std::map<int, std::vector<Primitive>> primitives_; ///< by mesh
+    std::map<int, std::vector<SurfacedMesh>> parts_;   ///< by mesh
     bool is_lit_ = false;
     bool has_camera_ = false;
 };
@@ -112,8 +113,7 @@ Shape SceneMaker::shape_of(const SurfacedMesh &part, const glm::dmat4 &to_world)
 void SceneMaker::add_shapes(const SurfacedMesh &part, const glm::dmat4 &to_world) {
     Shape shape = shape_of(part, to_world);
     // The standard turns the order of a mirrored triangle's corners over.
-    shape.flip_normals =
-        part.mesh->normals.empty() && glm::determinant(glm::dmat3(to_world)) < 0;
+    shape.flip_normals = part.mesh->normals.empty() && glm::determinant(glm::dmat3(to_world)) < 0;
     scene_.shapes.push_back(std::move(shape));
     if (part.surface.radiance != none)
         add_area_light(scene_, part.surface.radiance);
@@ -156,6 +156,21 @@ void SceneMaker::add_lights() {
         }
 }
 
+/// Lights that are points or directions are found by shadow rays alone, which take what light
+/// passes straight through for opaque.
+void SceneMaker::warn_of_passages() const {
+    const bool has_passages =
+        std::any_of(scene_.bsdfs.begin(), scene_.bsdfs.end(), [](const Bsdf &bsdf) {
+            return std::holds_alternative<MaskBsdf>(bsdf.model) ||
+                   std::holds_alternative<ThinDielectricBsdf>(bsdf.model);
+        });
+    if (is_lit_ && has_passages &&
+        std::any_of(scene_.emitters.begin(), scene_.emitters.end(),
+                    [](const Emitter &emitter) { return emitter.kind != EmitterKind::area; }))
+        document_.warn("", "its punctual lights do not shine through surfaces with alpha or thin "
+                           "glass, which throw whole shadows");
+}
+
 void SceneMaker::add_sensor(std::optional<int> chosen) {
     std::vector<const PlacedNode *> cameras;
     for (const PlacedNode &node : nodes_)
@@ -194,6 +209,7 @@ Scene load_gltf(const std::string &path, const LoadOptions &options) {
     SceneMaker maker(document, scene);
     maker.add_meshes();
     maker.add_lights();
+    maker.warn_of_passages();
     maker.add_sensor(options.sensor);
     return scene;
 }

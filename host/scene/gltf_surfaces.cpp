@@ -74,8 +74,8 @@ const Surface &SurfaceMaker::surface(const SurfaceNeeds &needs) {
     const Material &m = work.material;
     choose_sets(work);
     if (m.normal.is_there() && !m.is_unlit)
-        if (const auto normals = images_.normals(m.normal.texture, m.normal_scale,
-                                                 needs.flips_normals)) {
+        if (const auto normals =
+                images_.normals(m.normal.texture, m.normal_scale, needs.flips_normals)) {
             work.normal_map = bitmap(work, m.normal, normals, true, Rgb(1), "");
             work.surface.has_normal_map = true;
         }
@@ -195,8 +195,7 @@ int SurfaceMaker::opacity(Work &work) {
     if (m.alpha_mode == AlphaMode::opaque)
         return none;
     const std::string alphas = work.needs.has_alphas ? alpha_attribute : "";
-    const auto image =
-        m.base_texture.is_there() ? images_.alpha(m.base_texture.texture) : nullptr;
+    const auto image = m.base_texture.is_there() ? images_.alpha(m.base_texture.texture) : nullptr;
     const bool is_cut = m.alpha_mode == AlphaMode::mask;
     int index = none;
     if (image) {
@@ -277,11 +276,11 @@ int SurfaceMaker::transmitting(Work &work) {
 /// A sheet: without KHR_materials_volume the standard has surfaces infinitely thin.
 int SurfaceMaker::thin(Work &work) {
     const Material &m = work.material;
-    const bool is_clear = m.transmission == 1 && !m.transmission_texture.is_there() &&
-                          m.roughness == 0;
+    const bool is_clear =
+        m.transmission == 1 && !m.transmission_texture.is_there() && m.roughness == 0;
     if (is_clear)
-        return turned(work, add(ThinDielectricBsdf{{m.ior, 1}, none, base_color(work, Rgb(1))},
-                                m.name));
+        return turned(work,
+                      add(ThinDielectricBsdf{{m.ior, 1}, none, base_color(work, Rgb(1))}, m.name));
     PrincipledThinBsdf bsdf;
     bsdf.base_color = base_color(work, Rgb(1));
     bsdf.roughness = channel(work, m.metallic_roughness, 1, m.roughness);
@@ -299,8 +298,8 @@ int SurfaceMaker::thin(Work &work) {
 /// where it leaves, for a way as long as the material states its thickness.
 int SurfaceMaker::solid(Work &work) {
     const Material &m = work.material;
-    const bool is_glass = m.transmission == 1 && !m.transmission_texture.is_there() &&
-                          m.metallic == 0;
+    const bool is_glass =
+        m.transmission == 1 && !m.transmission_texture.is_there() && m.metallic == 0;
     const bool has_plain_roughness = m.roughness == 0 || !m.metallic_roughness.is_there();
     const Rgb passing = transmittance(m);
     if (passing != Rgb(1))

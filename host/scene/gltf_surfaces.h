@@ -33,7 +33,7 @@ struct SurfaceNeeds {
 /// What a shape gets of its material.
 struct Surface {
     int bsdf = none;
-    int radiance = none;                 ///< a texture, of what shines
+    int radiance = none; ///< a texture, of what shines
     bool has_normal_map = false;
     int set = 0;                         ///< TEXCOORD_<set> is (u, v)
     std::set<int> sets;                  ///< all that textures ask for

@@ -41,7 +41,7 @@ void read_direct(Properties &properties, Integrator &integrator) {
 
 bool is_point_like(const Emitter &emitter) {
     return emitter.kind != EmitterKind::area && emitter.kind != EmitterKind::constant &&
-           emitter.kind != EmitterKind::envmap;
+           emitter.kind != EmitterKind::envmap && emitter.kind != EmitterKind::sunsky;
 }
 
 bool lets_pass_straight(const Bsdf &bsdf) {

@@ -110,6 +110,7 @@ private:
     void read_envmap(Properties &properties, Emitter &emitter);
     // emitter_<kind>.cpp
     void read_spot(Properties &properties, Emitter &emitter);
+    void read_sunsky(Properties &properties, Emitter &emitter);
     void read_directional(Properties &properties, Emitter &emitter);
     void read_projector(Properties &properties, Emitter &emitter);
     /// Fails where the texture `name` of a light is that of a mesh.

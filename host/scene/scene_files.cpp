@@ -129,9 +129,8 @@ std::shared_ptr<const Image> SceneFiles::image(const std::function<Image()> &rea
         images_[{normal(path), use.raw, use.is_light, use.is_optional}];
     if (!known) {
         const auto image = std::make_shared<Image>();
-        reads_.add([image, reader, path, where, use] {
-            read_into(*image, reader, path, where, use);
-        });
+        reads_.add(
+            [image, reader, path, where, use] { read_into(*image, reader, path, where, use); });
         known = image;
     }
     return known;
