@@ -2,6 +2,7 @@
 /// The command line: what it may say, checked completely, before anything else runs.
 
 #include "config/sampling_options.h"
+#include "scene/aov.h"
 
 #include <cstdint>
 #include <map>
@@ -51,6 +52,7 @@ struct Options {
     std::map<std::string, std::string> defines;
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
+    std::vector<Aov> aovs;        ///< those of them that tell what the camera sees first
     SamplingOptions sampling;
     bool double_precision = false;           ///< --precision double
     std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together

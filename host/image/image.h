@@ -43,7 +43,8 @@ Image read_image(const std::string &path, const SourceLocation &referrer = {}, b
 /// R G B [A], X Y Z [A] or Y [A]), else the layer prefix ("variance" gives variance.R ...).
 struct ImageLayer {
     std::string name;
-    const Image *image = nullptr; ///< f32, all layers of the same size
+    const Image *image = nullptr;        ///< f32, all layers of the same size
+    std::vector<std::string> channels{}; ///< their whole names, where they are others
 };
 
 /// Writes `image` (linear f32) by the extension of `path`: .png .jpg (sRGB, clamped, multiplied by

@@ -4,6 +4,7 @@
 #include "film/trim.h"
 #include "flatten/config_of.h"
 #include "flatten/flat_scene.h"
+#include "layer_passes.h"
 #include "log.h"
 #include "memory_need.h"
 #include "path_tracer.h"
@@ -129,6 +130,8 @@ private:
     KernelConfig config_;
     RenderStats stats_;
     std::unique_ptr<PathTracer> tracer_;
+    std::unique_ptr<LayerPasses> layers_; ///< where layers are wanted
+    RenderResult layer_result_;           ///< of these
     std::unique_ptr<Picture> picture_;
     int done_ = 0;
     bool stopped_ = false;
@@ -139,7 +142,11 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
       spp_(options.spp > 0 ? options.spp : scene.sample_count) {
     stats_.seconds_device = watch_.lap("open the device");
     const PixelFormat format = scene.film.pixel_format;
+    const std::size_t values = values_of(format, options_) + layer_values(scene, options_);
+    options_.sampling.first_hits = wants_layers(scene, options_);
     flat_ = flatten(scene, options_.sampling);
+    if (options_.sampling.first_hits)
+        layers_ = std::make_unique<LayerPasses>(scene, flat_, options_, spp_);
     scene = {};
     config_ = configure(flat_, entry_, options_);
     set_frame();
@@ -147,13 +154,14 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     // The kernel is compiled while the hierarchy is being built.
     tracer_ = std::make_unique<PathTracer>(entry_, flat_, config_, options_);
     tracer_->start_compiling();
+    if (layers_)
+        layers_->start_compiling(tracer_->context(), tracer_->queue(), entry_, config_);
     build_hierarchy(flat_);
     stats_.host_bytes = flat_.bytes();
     stats_.seconds_build = watch_.lap("build");
     tracer_->compile(stats_);
     stats_.seconds_compile = watch_.lap("compile");
-    check_memory_need(need_of(flat_, config_, entry_, options_, values_of(format, options_), false),
-                      entry_);
+    check_memory_need(need_of(flat_, config_, entry_, options_, values, false), entry_);
     tracer_->upload(stats_);
     stats_.seconds_upload = watch_.lap("upload");
     picture_ =
@@ -177,6 +185,12 @@ void Rendering::set_frame() {
 }
 
 void Rendering::render_all() {
+    // First, since they take little: a render that is stopped has them.
+    if (layers_) {
+        layers_->run(tracer_->scene(), flat_, layer_result_);
+        layers_.reset();
+        watch_.lap("layers");
+    }
     stopped_ = tracer_->render(spp_, *picture_, stats_);
     done_ = stopped_ ? 0 : spp_;
     stats_.seconds_render = watch_.lap("render") - tracer_->seconds_read();
@@ -200,7 +214,7 @@ RenderResult Rendering::read() {
 }
 
 RenderResult Rendering::result_of(Picture &&picture) {
-    RenderResult result;
+    RenderResult result = std::move(layer_result_);
     result.interrupted = stopped_;
     if (stopped_)
         result.gaps = picture.fill_gaps();
@@ -249,9 +263,12 @@ DeviceEntry device_or_large_cpu(const std::string &spec) {
 
 MemoryNeed memory_at_precision(Scene &&scene, const RenderOptions &options) {
     const DeviceEntry entry = device_or_large_cpu(options.device);
-    FlatScene flat = flatten(scene, options.sampling);
+    SamplingOptions sampling = options.sampling;
+    sampling.first_hits = wants_layers(scene, options);
+    FlatScene flat = flatten(scene, sampling);
     const KernelConfig config = configure(flat, entry, options);
-    const std::size_t values = values_of(scene.film.pixel_format, options);
+    const std::size_t values =
+        values_of(scene.film.pixel_format, options) + layer_values(scene, options);
     scene = {};
     build_hierarchy(flat);
     flat.frame.control_group = static_cast<uint>(control_group_of(flat, config));

@@ -2,6 +2,7 @@
 /// From a parsed scene to a picture.
 
 #include "config/sampling_options.h"
+#include "film/aov_sums.h"
 #include "film/control.h"
 #include "memory_need.h"
 #include "scene/scene.h"
@@ -9,12 +10,19 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 
 namespace clrender {
 
 struct Profile;
+
+/// Layers of first hits beside those that the scene asks for.
+struct LayerOptions {
+    std::vector<Aov> aovs; ///< by pixels, not by the filter
+    bool matte = false;    ///< Cryptomatte
+};
 
 struct RenderOptions {
     int spp = 0; ///< samples a pixel; 0: the scene's
@@ -23,12 +31,13 @@ struct RenderOptions {
     std::string device = "auto";   ///< see choose_device()
     bool double_precision = false; ///< all in double, with one lane: slow
     SamplingOptions sampling;
-    int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
-    int tile = 0;                            ///< work-items in one launch; 0: chosen
-    int band_rows = 0;                       ///< rows of tiles in one band; 0: chosen
-    bool preview = false;                    ///< a few samples of all pixels first, however fast
-    bool with_variance = false;              ///< RenderResult::variance and error are wanted
-    bool with_samples = false;               ///< RenderResult::samples is wanted
+    int batch = 0;              ///< blocks of samples in one launch; 0: chosen
+    int tile = 0;               ///< work-items in one launch; 0: chosen
+    int band_rows = 0;          ///< rows of tiles in one band; 0: chosen
+    bool preview = false;       ///< a few samples of all pixels first, however fast
+    bool with_variance = false; ///< RenderResult::variance and error are wanted
+    bool with_samples = false;  ///< RenderResult::samples is wanted
+    LayerOptions layers;
     std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
     Profile *profile = nullptr;              ///< filled where given, with a kernel that counts
     std::function<void(double)> on_progress; ///< paths done; called after each launch
@@ -74,7 +83,9 @@ struct RenderResult {
     Image image;
     Image variance;
     Image samples;
-    ErrorEstimate error; ///< where the variance is wanted
+    std::vector<NamedLayer> layers; ///< of first hits: the scene's, then those of LayerOptions
+    std::map<std::string, std::string> layer_metadata; ///< what a file has to say of them
+    ErrorEstimate error;                               ///< where the variance is wanted
     RenderStats stats;
     bool interrupted = false;
     std::size_t gaps = 0; ///< pixels without a sample, which show their neighbours
