@@ -37,6 +37,13 @@ private:
     void check_children(int object);
     void read_shapes(Properties &root);
     void read_scene_emitters(Properties &root);
+    // mitsuba_objects.cpp
+    /// Numbers what a shape of the scene has added to the shapes and instances.
+    void number_object(int object, std::size_t first_shape, std::size_t first_instance);
+    /// Those that are meshes, behind all others.
+    void number_meshes();
+    int name_object(int object);
+    // mitsuba_scene.cpp
     void read_files();
     void read_view(Properties &root);
     void read_chosen_sensor(Properties &root);
@@ -122,12 +129,18 @@ private:
     void read_film(int object);
     void read_integrator(int object);
     void read_other_integrator(Properties &properties, const SameLight &other);
+    // mitsuba_aov.cpp
     void read_layers(Properties &properties);
 
     const Document &document_;
     bool all_faults_;
     std::optional<int> chosen_sensor_;
     std::vector<std::string> faults_; ///< lines, each once
+    struct NumberedMesh {
+        int object;
+        std::size_t shape;
+    };
+    std::vector<NumberedMesh> meshes_; ///< of the scene, in the file's order
     Scene scene_;
     bool load_images_ = true;  ///< off while objects that no shape uses are checked
     std::map<int, int> bsdfs_; ///< by object
