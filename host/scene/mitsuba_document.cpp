@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t max_include_depth = 16;
 constexpr std::size_t max_files = 4096; ///< includes may fan out: 16 levels alone are no limit
 
-const std::vector<std::string> object_tags{"bsdf",   "emitter", "film",    "integrator",
-                                           "medium", "phase",   "rfilter", "sampler",
-                                           "sensor", "shape",   "texture", "volume"};
+const std::vector<std::string> object_tags{
+    "bsdf",    "emitter", "film",  "integrator", "medium", "phase",     "rfilter",
+    "sampler", "sensor",  "shape", "texture",    "volume", "subsurface"};
 const std::vector<std::string> value_tags{"boolean", "float",    "integer",   "point", "rgb",
                                           "string",  "spectrum", "transform", "vector"};
 const std::vector<std::string> other_tags{"alias", "default", "include", "path", "ref"};
