@@ -24,6 +24,7 @@ GROUPS = {
     "spheres": "SPHERE_COUNT,OPAQUE_COUNT,LARGE_COUNT,SHADOW_FREE_COUNT",
     "flat shapes": "PLANAR_COUNT,HAS_DISKS,SHADOWLESS_PLANAR_COUNT,PLANAR_AXES",
     "hierarchy": "HAS_TRIANGLES,HAS_BVH_SPHERES,HAS_VERTEX_NORMALS",
+    "quadrics": "HAS_QUADRICS,HAS_QUADRIC_LIGHTS",
     "instances": "HAS_INSTANCES",
     "record layout": "RECORD_TABLE,MATERIALS_IN_RECORDS",
     "materials": "HAS_DIFFUSE,HAS_MIRROR,HAS_CONDUCTOR,HAS_DIELECTRIC,HAS_THINDIELECTRIC,HAS_NULL,"
@@ -40,7 +41,7 @@ GROUPS = {
     "number of lights": "LIGHT_COUNT,HAS_ORIENTED_LIGHTS,SOLE_EMITTER,SOLE_LIGHT_SPHERE",
     "environment map": "ENVIRONMENT",
     "lens and clipping": "HAS_LENS,HAS_CLIP",
-    "roulette": "HAS_ROULETTE",
+    "roulette": "ROULETTE",
     "alpha": "HAS_ALPHA",
 }
 SPECIALISED, EVERYTHING = "specialised", "everything"

@@ -6,7 +6,7 @@ build_packages=(
     g++ cmake ninja-build
     ocl-icd-opencl-dev opencl-clhpp-headers
     libpugixml-dev libcli11-dev nlohmann-json3-dev libfmt-dev libtbb-dev libopenexr-dev libglm-dev
-    libtinyobjloader-dev libstb-dev libpng-dev zlib1g-dev
+    libtinyobjloader-dev libtinygltf-dev libdraco-dev libstb-dev libpng-dev zlib1g-dev
 )
 # To run it: an OpenCL runtime for the CPU.
 run_packages=(pocl-opencl-icd)

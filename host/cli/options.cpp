@@ -85,6 +85,15 @@ CLI::Validator one_of(const std::vector<std::string> &words) {
             ""};
 }
 
+/// A check for CLI11: the word auto, or what another check accepts.
+CLI::Validator auto_or(const CLI::Validator &other) {
+    return {[other](std::string &text) {
+                std::string fault = text == "auto" ? "" : other(text);
+                return fault.empty() ? fault : fault + ", or auto";
+            },
+            ""};
+}
+
 /// Bytes, or with K, M, G or T behind the number times 1024, 1024^2 and so on, as in 512M, 1.5GiB.
 std::optional<std::uint64_t> parse_size(const std::string &text) {
     constexpr std::string_view units = "KMGT";
@@ -223,7 +232,9 @@ struct RawOptions {
     std::string accel = "bvh";
     std::string sampler = "sobol";
     std::string light_samples = "auto";
+    std::string rr_depth;
     std::string strategy = "mis";
+    std::string specular_connections = "auto";
     std::string profile;
     std::string max_memory;
     std::string effect = "1%";
@@ -235,7 +246,7 @@ struct RawOptions {
 };
 
 void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
-    app.add_option("SCENE", options.scene, "Mitsuba 3 scene (.xml) or a model (.obj, .ply)")
+    app.add_option("SCENE", options.scene, "Mitsuba 3 scene (.xml) or a model (.gltf, .glb, .obj, .ply)")
         ->type_name("");
     app.add_option("-o,--output", options.outputs,
                    "Picture to write, repeatable: .png .jpg .hdr .exr .pfm\n"
@@ -280,9 +291,11 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->type_name("N")
         ->check(whole_number(-1, max_int))
         ->group(group);
-    app.add_option("--rr-depth", options.rr_depth, "Depth from which roulette ends paths")
+    app.add_option("--rr-depth", raw.rr_depth,
+                   "Depth from which roulette ends paths, or auto: by what they carry, from the\n"
+                   "second diffuse surface on, which is the default where the scene states none")
         ->type_name("N")
-        ->check(whole_number(1, max_int))
+        ->check(auto_or(whole_number(1, max_int)))
         ->group(group);
     app.add_option("--seed", options.seed, "Another seed, other noise")
         ->type_name("N")
@@ -307,6 +320,12 @@ void add_sampling_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "sampling alone (default: mis)")
         ->type_name("NAME")
         ->check(one_of({"mis", "light", "bsdf"}))
+        ->group(group);
+    app.add_option("--specular-connections", raw.specular_connections,
+                   "Light sampling over mirrors and through balls of glass: auto, where a scene\n"
+                   "has them, or off (default: auto)")
+        ->type_name("WHEN")
+        ->check(one_of({"auto", "off"}))
         ->group(group);
     app.add_option("--accel", raw.accel, "bvh, or none: test every triangle (default: bvh)")
         ->type_name("WHICH")
@@ -452,6 +471,7 @@ void finish_sampling(SamplingOptions &sampling, const RawOptions &raw) {
                                                  : Strategy::mis;
     sampling.independent_sampler = raw.sampler == "independent";
     sampling.brute_force = raw.accel == "none";
+    sampling.specular_connections = raw.specular_connections == "auto";
     for (const std::string &name : raw.generic) {
         if (name == "all")
             sampling.forced_features = all_features();
@@ -465,6 +485,9 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (!raw.resolution.empty())
         options.resolution = parse_resolution(raw.resolution);
     options.lanes = raw.lanes == "auto" ? 0 : *parse_number<int>(raw.lanes);
+    options.weight_window = raw.rr_depth == "auto";
+    if (!raw.rr_depth.empty() && !options.weight_window)
+        options.rr_depth = parse_number<int>(raw.rr_depth);
     finish_sampling(options.sampling, raw);
     options.double_precision = raw.precision == "double";
     if (!raw.max_memory.empty())
@@ -480,8 +503,15 @@ void finish_options(Options &options, const RawOptions &raw) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);
     }
-    if (options.outputs.empty() && options.command == Command::render) {
-        const std::string stem = fs::path(options.scene).stem().string();
+    const std::string stem = fs::path(options.scene).stem().string();
+    CheckpointOptions &checkpoint = options.checkpoint;
+    if (options.command == Command::resume && checkpoint.file.empty())
+        checkpoint.file = checkpoint.resumed;
+    if (checkpoint.parts > 1) {
+        if (checkpoint.file.empty())
+            checkpoint.file =
+                fmt::format("{}.part{}of{}.exr", stem, checkpoint.part, checkpoint.parts);
+    } else if (options.outputs.empty() && options.command == Command::render) {
         options.outputs = {stem + ".png", stem + ".exr"};
     }
 }
@@ -503,6 +533,26 @@ void check_combination(const Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.spp && *options.spp < least_test_samples)
         refuse(fmt::format("test takes at least {} samples, -s allows {}", least_test_samples,
                            *options.spp));
+    const CheckpointOptions &checkpoint = options.checkpoint;
+    const bool has_checkpoint = !checkpoint.file.empty() || checkpoint.parts > 1;
+    if (options.command == Command::resume || options.command == Command::merge) {
+        if (!options.scene.empty())
+            refuse("resume and merge know their scene, expected no SCENE");
+        if (checkpoint.parts > 1 || options.check)
+            refuse("resume and merge exclude --part and --check");
+    }
+    if (options.command == Command::merge && options.outputs.empty())
+        refuse("merge needs -o, the picture to write");
+    if (options.command == Command::test && has_checkpoint)
+        refuse("test excludes --checkpoint and --part");
+    if (has_checkpoint && !raw.profile.empty())
+        refuse("--profile excludes --checkpoint and --part: it shows every sample once");
+    if (checkpoint.parts > 1 && options.stop.any())
+        refuse("--part takes a number of samples, it excludes --time and --target-error");
+    if (options.command == Command::test && options.stop.any())
+        refuse("test decides itself when it is done, it excludes --time and --target-error");
+    if (options.stop.any() && !raw.profile.empty())
+        refuse("--profile excludes --time and --target-error: it shows every sample once");
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
@@ -534,9 +584,13 @@ ParseResult parse_options(int argc, const char *const *argv) {
     app.footer(examples);
     add_picture_options(app, options, raw);
     add_sampling_options(app, options, raw);
+    add_stop_options(app, options.stop);
+    add_checkpoint_options(app, options.checkpoint);
     add_run_options(app, options, raw);
     const CLI::App *compare = add_compare(app, options.compare);
     const CLI::App *test = add_test(app, options, raw);
+    const CLI::App *resume = add_resume(app, options.checkpoint);
+    const CLI::App *merge = add_merge(app, options.checkpoint);
 
     try {
         app.parse(reversed_arguments(argc, argv));
@@ -544,6 +598,8 @@ ParseResult parse_options(int argc, const char *const *argv) {
                           : raw.self_test     ? Command::self_test
                           : compare->parsed() ? Command::compare
                           : test->parsed()    ? Command::test
+                          : resume->parsed()  ? Command::resume
+                          : merge->parsed()   ? Command::merge
                                               : Command::render;
         check_combination(options, raw);
     } catch (const CLI::Success &help_or_version) {

@@ -1,6 +1,8 @@
 #pragma once
 /// The command line: what it may say, checked completely, before anything else runs.
 
+#include "cli/checkpoint_options.h"
+#include "cli/stop_options.h"
 #include "config/sampling_options.h"
 
 #include <cstdint>
@@ -12,7 +14,7 @@
 
 namespace clrender::cli {
 
-enum class Command { render, compare, test, list_devices, self_test };
+enum class Command { render, compare, test, list_devices, self_test, resume, merge };
 
 struct Resolution {
     int width = 0;
@@ -45,6 +47,7 @@ struct Options {
     std::optional<Resolution> resolution;
     std::optional<int> max_depth; ///< -1: no limit, as in a scene file
     std::optional<int> rr_depth;
+    bool weight_window = false; ///< roulette is one, even where the scene states an rr_depth
     std::optional<std::uint32_t> seed;
     int lanes = 0;             ///< 1, 4, 8 or 16; 0: as wide as the device
     std::optional<int> sensor; ///< of the scene's sensors, counted from 0
@@ -52,6 +55,8 @@ struct Options {
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
     SamplingOptions sampling;
+    StopOptions stop;
+    CheckpointOptions checkpoint;
     bool double_precision = false;           ///< --precision double
     std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together
     bool check = false;

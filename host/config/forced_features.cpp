@@ -29,6 +29,7 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_DISKS, 1),
         CLR_SETTING(HAS_TRIANGLES, 1),
         CLR_SETTING(HAS_BVH_SPHERES, 1),
+        CLR_SETTING(HAS_QUADRICS, 1),
         CLR_SETTING(HAS_INSTANCES, 1),
         CLR_SETTING(HAS_VERTEX_NORMALS, 1),
         CLR_SETTING(HAS_UVS, 1),
@@ -58,11 +59,11 @@ const std::map<std::string, Setting> &settings() {
         CLR_SETTING(HAS_PROJECTORS, 1),
         CLR_SETTING(HAS_DIRECTIONAL_LIGHTS, 1),
         CLR_SETTING(HAS_SPHERE_LIGHTS, 1),
+        CLR_SETTING(HAS_QUADRIC_LIGHTS, 1),
         CLR_SETTING(HAS_PLANAR_LIGHTS, 1),
         CLR_SETTING(HAS_TRIANGLE_LIGHTS, 1),
         CLR_SETTING(HAS_LENS, 1),
         CLR_SETTING(HAS_CLIP, 1),
-        CLR_SETTING(HAS_ROULETTE, 1),
         CLR_SETTING(HAS_ALPHA, 1),
     };
 #undef CLR_SETTING
@@ -74,6 +75,7 @@ const std::multimap<std::string, std::string> &dependents() {
     static const std::multimap<std::string, std::string> table = {
         {"HAS_UVS", "HAS_TANGENTS"},
         {"HAS_TRIANGLES", "HAS_INSTANCES"},
+        {"HAS_QUADRICS", "HAS_QUADRIC_LIGHTS"},
         {"HAS_TRIANGLES", "HAS_ATTRIBUTES"},
         {"HAS_TANGENTS", "HAS_BUMPMAP"},
         {"HAS_TANGENTS", "HAS_NORMALMAP"},
@@ -97,8 +99,9 @@ const std::multimap<std::string, std::string> &dependents() {
 
 const ForcedFeatures &all_features() {
     static const ForcedFeatures all = [] {
-        // Two are counts, which flatten() raises to one; of the third it makes a map.
-        ForcedFeatures names = {"SPHERE_COUNT", "PLANAR_COUNT", "ENVIRONMENT"};
+        // Two are counts, which flatten() raises to one; of the third it makes a map; of the fourth
+        // the scene may have another kind.
+        ForcedFeatures names = {"SPHERE_COUNT", "PLANAR_COUNT", "ENVIRONMENT", "ROULETTE"};
         for (const auto &[name, setting] : settings())
             names.insert(name);
         return names;

@@ -20,7 +20,8 @@ bool is_forced(const ForcedFeatures &features, const std::string &name);
 
 /// Sets the fields of these names, and what they need, to what serves every scene. flatten() puts
 /// in what shifts indices (a sphere and a rectangle that no ray meets, lights without light) and
-/// the map of an environment that is none, which is why ENVIRONMENT is left to config_of().
+/// the map of an environment that is none, which is why ENVIRONMENT is left to config_of(), as is
+/// ROULETTE, which is added only where the scene has none.
 void force_features(const ForcedFeatures &features, KernelConfig &config);
 
 } // namespace clrender

@@ -98,15 +98,19 @@ void build_hierarchy(FlatScene &flat) {
     std::vector<Bvh> trees;
     const std::vector<BvhInstance> instances = build_groups(flat, trees);
     const std::size_t own = flat.groups.empty() ? flat.corners.size() : flat.groups.front().first;
-    Bvh bvh = build_bvh(std::span(flat.corners).first(own), flat.bvh_spheres, {}, instances);
+    Bvh bvh = build_bvh(std::span(flat.corners).first(own), flat.bvh_spheres, {}, instances,
+                        flat.bvh_quadrics);
     // An empty list in place of an empty vector would keep the memory.
     flat.corners = std::vector<TriangleCorners>();
     flat.bvh_spheres = std::vector<BvhSphere>();
+    flat.bvh_quadrics = std::vector<BvhQuadric>();
     flat.nodes = std::move(bvh.nodes);
     flat.triangle_blocks = std::move(bvh.triangle_blocks);
     flat.sphere_blocks = std::move(bvh.sphere_blocks);
+    flat.quadric_blocks = std::move(bvh.quadric_blocks);
     flat.frame.triangle_blocks = static_cast<uint>(flat.triangle_blocks.size());
     flat.frame.sphere_blocks = static_cast<uint>(flat.sphere_blocks.size());
+    flat.frame.quadric_blocks = static_cast<uint>(flat.quadric_blocks.size());
 
     std::size_t degenerate = bvh.degenerate;
     std::vector<uint> roots;

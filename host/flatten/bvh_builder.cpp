@@ -300,13 +300,19 @@ bool make_primitive(const Input &input, std::size_t index, Primitive &primitive)
         primitive.set(box, std::uint32_t(index));
         return in_range(t[0]) && in_range(t[1]) && in_range(t[2]) && has_area(t);
     }
-    if (index >= input.triangles.size() + input.spheres.size()) {
-        const BvhInstance &in =
-            input.instances[index - input.triangles.size() - input.spheres.size()];
+    if (index >= input.first_instance()) {
+        const BvhInstance &in = input.instances[index - input.first_instance()];
         box.lower = Point(in.lower);
         box.upper = Point(in.upper);
         primitive.set(box, std::uint32_t(index), BVH_WIDTH);
         return in_range(in.lower) && in_range(in.upper) && in.lower.x <= in.upper.x;
+    }
+    if (index >= input.first_quadric()) {
+        const BvhQuadric &q = input.quadrics[index - input.first_quadric()];
+        box.lower = Point(q.lower);
+        box.upper = Point(q.upper);
+        primitive.set(box, std::uint32_t(index));
+        return q.radius > 0.0f && in_range(q.lower) && in_range(q.upper);
     }
     const BvhSphere &s = input.spheres[index - input.triangles.size()];
     // The sums round to nearest; one step outwards makes the box contain the sphere.
@@ -350,9 +356,10 @@ std::size_t usable_primitives(const Input &input, bool parallel, std::span<Primi
 } // namespace bvh
 
 Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles, std::span<const BvhSphere> spheres,
-              const BvhOptions &options, std::span<const BvhInstance> instances) {
-    const bvh::Input input{triangles, spheres, instances};
-    const std::size_t count = triangles.size() + spheres.size() + instances.size();
+              const BvhOptions &options, std::span<const BvhInstance> instances,
+              std::span<const BvhQuadric> quadrics) {
+    const bvh::Input input{triangles, spheres, quadrics, instances};
+    const std::size_t count = input.first_instance() + instances.size();
     bvh::LargeArray<bvh::Primitive> storage(count);
     const std::span<bvh::Primitive> all(storage.data(), count);
     const std::span<bvh::Primitive> primitives =

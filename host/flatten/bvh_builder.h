@@ -3,6 +3,7 @@
 
 #include "flatten/real.h"
 #include "shared/bvh.h"
+#include "shared/quadric.h"
 
 #include <array>
 #include <cstddef>
@@ -18,6 +19,18 @@ struct BvhSphere {
     uint prim = BVH_NO_PRIM;
 };
 
+/// A quadric of the tree: the box around it, and what rays are tested against (QuadricBlock), with
+/// the id that a hit reports.
+struct BvhQuadric {
+    Vec3 lower{0.0f}, upper{0.0f};
+    Vec3 center{0.0f};
+    std::array<Vec3, 3> rows{};
+    clr_real radius = 0.0f;
+    clr_real half_length = 0.0f;
+    uint kind = 0;
+    uint prim = BVH_NO_PRIM;
+};
+
 /// An instance of the tree, of which only the box is known here: a leaf of its own.
 struct BvhInstance {
     Vec3 lower{0.0f}, upper{0.0f};
@@ -26,7 +39,7 @@ struct BvhInstance {
 /// What the search for a cheap tree believes, in units of one node visit.
 struct BvhOptions {
     clr_real node_cost = 1.0f;
-    /// One block of eight triangles or spheres, whether full or not.
+    /// One block of eight triangles, spheres or quadrics, whether full or not.
     clr_real block_cost = 1.0f;
     /// Levels of inner nodes, 1 to BVH_MAX_LEVELS.
     int max_levels = BVH_MAX_LEVELS;
@@ -40,6 +53,7 @@ struct Bvh {
     std::vector<BvhNode> nodes;
     std::vector<TriangleBlock> triangle_blocks;
     std::vector<SphereBlock> sphere_blocks;
+    std::vector<QuadricBlock> quadric_blocks;
     /// Primitives left out: no area, a radius that is not positive, or coordinates that are not
     /// finite or beyond BVH_COORDINATE_LIMIT.
     std::size_t degenerate = 0;
@@ -59,6 +73,7 @@ struct Bvh {
 /// the same tree on any number of threads.
 [[nodiscard]] Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
                             std::span<const BvhSphere> spheres = {}, const BvhOptions &options = {},
-                            std::span<const BvhInstance> instances = {});
+                            std::span<const BvhInstance> instances = {},
+                            std::span<const BvhQuadric> quadrics = {});
 
 } // namespace clrender::inline CLR_PRECISION

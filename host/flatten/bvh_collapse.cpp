@@ -192,7 +192,7 @@ private:
     }
 
     /// Levels of inner nodes that equal_parts needs at most: its last one has eight primitives or
-    /// less, which are of two kinds.
+    /// less, which are of several kinds.
     [[nodiscard]] static int balanced_levels(std::uint32_t count) {
         int levels = 1;
         for (std::uint32_t n = count; n > kWidth; n = (n + kWidth - 1) / kWidth) {
@@ -234,7 +234,7 @@ private:
     [[nodiscard]] Parts equal_parts(const Part &node) const {
         Parts parts;
         if (node.count <= kWidth) {
-            // Two kinds in one small group: a block for each primitive.
+            // Several kinds in one small group: a block for each primitive.
             for (std::uint32_t i = 0; i < node.count; ++i) {
                 parts.part[parts.count++] = {Part::kNoNode, node.begin + i, 1};
             }
@@ -311,16 +311,23 @@ private:
     /// The reference to a block that fill_blocks fills later, or to an instance.
     [[nodiscard]] std::uint32_t emit_block(const Part &part) {
         const Primitive &first = primitives_[part.begin];
-        if (input_.is_instance(first)) {
-            return bvh_child(
-                BVH_CHILD_INSTANCE,
-                std::uint32_t(first.index - input_.triangles.size() - input_.spheres.size()));
+        const Run run{part.begin, part.count};
+        switch (input_.kind_of(first)) {
+        case Input::Kind::instance:
+            return bvh_child(BVH_CHILD_INSTANCE,
+                             std::uint32_t(first.index - input_.first_instance()));
+        case Input::Kind::quadric:
+            quadric_runs_.push_back(run);
+            return bvh_child(BVH_CHILD_SPHERES,
+                             std::uint32_t(quadric_runs_.size() - 1) | BVH_QUADRICS_BIT);
+        case Input::Kind::sphere:
+            sphere_runs_.push_back(run);
+            return bvh_child(BVH_CHILD_SPHERES, std::uint32_t(sphere_runs_.size() - 1));
+        case Input::Kind::triangle:
+            break;
         }
-        const bool spheres = input_.is_sphere(first);
-        std::vector<Run> &runs = spheres ? sphere_runs_ : triangle_runs_;
-        runs.push_back({part.begin, part.count});
-        return bvh_child(spheres ? BVH_CHILD_SPHERES : BVH_CHILD_TRIANGLES,
-                         std::uint32_t(runs.size() - 1));
+        triangle_runs_.push_back(run);
+        return bvh_child(BVH_CHILD_TRIANGLES, std::uint32_t(triangle_runs_.size() - 1));
     }
 
     void fill_blocks() {
@@ -334,6 +341,10 @@ private:
         bvh_.sphere_blocks.resize(sphere_runs_.size());
         for_each_index(sphere_runs_.size(), [&](std::size_t i) {
             fill(bvh_.sphere_blocks[i], members(sphere_runs_[i]));
+        });
+        bvh_.quadric_blocks.resize(quadric_runs_.size());
+        for_each_index(quadric_runs_.size(), [&](std::size_t i) {
+            fill(bvh_.quadric_blocks[i], members(quadric_runs_[i]));
         });
     }
 
@@ -372,13 +383,30 @@ private:
         }
     }
 
+    void fill(QuadricBlock &block, std::span<const Primitive> members) const {
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            const Primitive &p = members[lane < members.size() ? lane : 0];
+            const BvhQuadric &q = input_.quadrics[p.index - input_.first_quadric()];
+            for (int axis = 0; axis < 3; ++axis) {
+                block.center[axis][lane] = q.center[axis];
+                for (std::size_t row = 0; row < 3; ++row) {
+                    block.rows[row][axis][lane] = q.rows[row][axis];
+                }
+            }
+            block.radius[lane] = q.radius;
+            block.half_length[lane] = q.half_length;
+            block.kind[lane] = q.kind;
+            block.prim[lane] = q.prim;
+        }
+    }
+
     const Input &input_;
     std::span<const Primitive> primitives_;
     std::span<const BinaryNode> binary_;
     const BvhOptions &options_;
     Bvh &bvh_;
     LargeArray<Choice> choices_;
-    std::vector<Run> triangle_runs_, sphere_runs_;
+    std::vector<Run> triangle_runs_, sphere_runs_, quadric_runs_;
     clr_real scale_ = 1.0f; ///< of lengths, see Box::half_area
     clr_real area_scale_ = 1.0f;
 };

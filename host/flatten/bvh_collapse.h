@@ -68,8 +68,8 @@ struct Box {
     }
 };
 
-/// One triangle (`index` into the triangles), sphere (the number of triangles + its index) or
-/// instance (the number of both + its index). `weight` is its share of a block, in BVH_WIDTH-ths.
+/// One triangle, sphere, quadric or instance, numbered through in this order. `weight` is its share
+/// of a block, in BVH_WIDTH-ths.
 struct Primitive {
     clr_real lower[3];
     std::uint32_t index;
@@ -92,7 +92,7 @@ struct Primitive {
 static_assert(sizeof(Primitive) == 8 * sizeof(clr_real));
 
 /// A node of the binary tree over `Primitive`s [begin, begin + count). The two children lie side by
-/// side; a leaf has none and holds what fits into one block: up to eight triangles or spheres, or
+/// side; a leaf has none and holds what fits into one block: up to eight primitives of one kind, or
 /// one instance.
 struct BinaryNode {
     Box box;
@@ -107,23 +107,29 @@ struct BinaryNode {
 struct Input {
     std::span<const std::array<Vec3, 3>> triangles;
     std::span<const BvhSphere> spheres;
+    std::span<const BvhQuadric> quadrics;
     std::span<const BvhInstance> instances;
 
-    [[nodiscard]] bool is_instance(const Primitive &p) const {
-        return p.index >= triangles.size() + spheres.size();
-    }
-    [[nodiscard]] bool is_sphere(const Primitive &p) const {
-        return p.index >= triangles.size() && !is_instance(p);
+    [[nodiscard]] std::size_t first_quadric() const { return triangles.size() + spheres.size(); }
+    [[nodiscard]] std::size_t first_instance() const { return first_quadric() + quadrics.size(); }
+    /// What a child that holds the primitive is.
+    enum class Kind { triangle, sphere, quadric, instance };
+    [[nodiscard]] Kind kind_of(const Primitive &p) const {
+        return p.index < triangles.size()   ? Kind::triangle
+               : p.index < first_quadric()  ? Kind::sphere
+               : p.index < first_instance() ? Kind::quadric
+                                            : Kind::instance;
     }
 
     /// Whether these fit into one block.
     [[nodiscard]] bool is_block(std::span<const Primitive> primitives) const {
-        const bool one_kind = (triangles.empty() || spheres.empty()) && instances.empty();
+        const bool one_kind = instances.empty() && (triangles.empty() || spheres.empty()) &&
+                              (quadrics.empty() || first_quadric() == 0);
         return primitives.size() <= 1 ||
                (primitives.size() <= BVH_WIDTH &&
                 (one_kind ||
                  std::all_of(primitives.begin(), primitives.end(), [&](const Primitive &p) {
-                     return !is_instance(p) && is_sphere(p) == is_sphere(primitives[0]);
+                     return kind_of(p) != Kind::instance && kind_of(p) == kind_of(primitives[0]);
                  })));
     }
 };

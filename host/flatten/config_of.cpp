@@ -38,9 +38,9 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     config.HAS_DISKS = any(flat.planars, [](const Planar &p) { return p.is_disk != 0; });
     config.HAS_TRIANGLES = flat.triangle_count > 0 ? 1 : 0;
     config.HAS_BVH_SPHERES = flat.has_bvh_spheres() ? 1 : 0;
+    config.HAS_QUADRICS = flat.quadrics.empty() ? 0 : 1;
     config.HAS_INSTANCES = flat.instances.empty() ? 0 : 1;
-    const bool has_hierarchy = config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0;
-    config.BRUTE_FORCE = has_hierarchy && sampling.brute_force && flat.groups.empty() ? 1 : 0;
+    config.BRUTE_FORCE = flat.has_hierarchy() && sampling.brute_force && flat.groups.empty() ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
     config.HAS_UVS = flat.needs_uvs() ? 1 : 0;
     config.RECORD_TABLE = flat.lane_wise_count() <= CLR_TABLE_SIZE ? 1 : 0;
@@ -143,6 +143,9 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
         case CLR_LIGHT_SPHERE:
             config.HAS_SPHERE_LIGHTS = 1;
             break;
+        case CLR_LIGHT_QUADRIC:
+            config.HAS_QUADRIC_LIGHTS = 1;
+            break;
         case CLR_LIGHT_PLANAR:
             config.HAS_PLANAR_LIGHTS = 1;
             break;
@@ -157,6 +160,28 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
     config.HAS_SKY = flat.facts.has_sky ? 1 : 0;
 }
 
+/// Where lanes keep step, short paths have little to save. A depth has to come before their end.
+int roulette_of(const FlatScene &flat, bool has_free_passages) {
+    const FrameData &f = flat.frame;
+    const int short_path = flat.has_hierarchy() ? 2 : 10;
+    if (flat.facts.shows_depth)
+        return CLR_ROULETTE_NONE;
+    if (flat.facts.weight_window && f.max_depth > short_path)
+        return CLR_ROULETTE_WINDOW;
+    return f.rr_depth < f.max_depth || has_free_passages ? CLR_ROULETTE_DEPTH : CLR_ROULETTE_NONE;
+}
+
+void set_connectors(const FlatScene &flat, KernelConfig &config) {
+    const auto has_kind = [&](uint kind) {
+        return any(flat.specular_connectors,
+                   [=](const SpecularConnector &c) { return c.kind == kind; });
+    };
+    config.SPECULAR_CONNECTORS = static_cast<int>(flat.specular_connectors.size());
+    config.CONNECTS_GLASS = has_kind(CLR_CONNECT_REFRACTION);
+    config.CONNECTS_SPHERES = config.CONNECTS_GLASS | has_kind(CLR_CONNECT_REFLECTION);
+    config.CONNECTS_PLANES = has_kind(CLR_CONNECT_PLANE);
+}
+
 void set_integrator(const FlatScene &flat, const SamplingOptions &sampling, KernelConfig &config) {
     const FrameData &f = flat.frame;
     config.INTEGRATOR = flat.facts.shows_depth ? CLR_INTEGRATOR_DEPTH : CLR_INTEGRATOR_PATH;
@@ -166,8 +191,7 @@ void set_integrator(const FlatScene &flat, const SamplingOptions &sampling, Kern
     config.FREE_PASSAGES =
         flat.facts.free_passages && (config.HAS_NULL != 0 || config.HAS_THINDIELECTRIC != 0) ? 1
                                                                                              : 0;
-    config.HAS_ROULETTE =
-        !flat.facts.shows_depth && (f.rr_depth < f.max_depth || config.FREE_PASSAGES != 0) ? 1 : 0;
+    config.ROULETTE = roulette_of(flat, config.FREE_PASSAGES != 0);
     // The last ray of a path would only bring what multiple importance sampling expects of it:
     // light. After some bounces all of it may as well come from light sampling, where that cannot
     // miss: of several lights it might choose one that is hidden, and seldom the one that shines.
@@ -218,10 +242,13 @@ KernelConfig config_of(const FlatScene &flat, const SamplingOptions &sampling,
     set_geometry(flat, sampling, config);
     set_materials(flat, config);
     set_lights(flat, config);
+    set_connectors(flat, config);
     set_integrator(flat, sampling, config);
     set_camera(flat, config);
     force_features(sampling.forced_features, config);
     config.HAS_UVS |= config.HAS_TANGENTS;
+    if (sampling.forced_features.count("ROULETTE") != 0 && config.ROULETTE == CLR_ROULETTE_NONE)
+        config.ROULETTE = CLR_ROULETTE_DEPTH;
     // The map is there, unless the scene's strategy forbids it.
     if (sampling.forced_features.count("ENVIRONMENT") != 0 && !flat.env_cdf.empty())
         config.ENVIRONMENT = CLR_ENVIRONMENT_MAP;

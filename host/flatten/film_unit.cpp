@@ -31,20 +31,27 @@ double largest(const Image &image) {
     return size;
 }
 
+/// The largest value of an attribute of the shape that shines; 0 where there is none.
+double largest(const std::string &attribute, const Scene &scene, const Emitter &emitter) {
+    if (emitter.shape == none)
+        return 0;
+    const Mesh &mesh = *scene.shapes[static_cast<std::size_t>(emitter.shape)].mesh;
+    const MeshAttribute *found = find_attribute(mesh, attribute);
+    return found == nullptr ? 0 : largest_value(*found);
+}
+
 double largest(const Texture &texture, const Scene &scene, const Emitter &emitter) {
+    const double factor = largest(texture.scale) *
+                          (texture.product.empty() ? 1 : largest(texture.product, scene, emitter));
     switch (texture.kind) {
     case TextureKind::constant:
         return largest(texture.value);
     case TextureKind::checkerboard:
         return std::max(largest(texture.color0), largest(texture.color1));
     case TextureKind::bitmap:
-        return largest(*texture.bitmap);
+        return largest(*texture.bitmap) * factor;
     case TextureKind::attribute:
-        if (emitter.shape != none)
-            if (const MeshAttribute *attribute = find_attribute(
-                    *scene.shapes[static_cast<std::size_t>(emitter.shape)].mesh, texture.attribute))
-                return texture.scale * largest_value(*attribute);
-        break;
+        return largest(texture.attribute, scene, emitter) * factor;
     }
     return 0;
 }

@@ -8,8 +8,10 @@
 #include "shared/bsdf_parameters.h"
 #include "shared/instance.h"
 #include "shared/launch_data.h"
+#include "shared/quadric.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
+#include "shared/specular_connector.h"
 
 #include <array>
 #include <cstddef>
@@ -49,6 +51,7 @@ struct SceneFacts {
     int filter_border = 0; ///< pixels around its own that a sample reaches
     Strategy strategy = Strategy::mis;
     bool shows_depth = false; ///< the depth integrator
+    bool weight_window = false; ///< roulette is one, where paths are long enough
     bool hides_emitters = false;
     bool free_passages = false; ///< as FREE_PASSAGES, if there are passages
     bool has_alpha = false;
@@ -69,12 +72,16 @@ struct FlatScene {
     /// What build_hierarchy() makes the tree of.
     std::vector<TriangleCorners> corners;
     std::vector<BvhSphere> bvh_spheres;
+    std::vector<BvhQuadric> bvh_quadrics;
     /// What it makes the groups' trees of. Until then Instance::root is the index of a group.
     std::vector<FlatGroup> groups;
 
     /// Primitives that every ray tests.
     [[nodiscard]] std::size_t lane_wise_count() const {
         return static_cast<std::size_t>(facts.sphere_count) + planars.size();
+    }
+    [[nodiscard]] bool has_hierarchy() const {
+        return triangle_count > 0 || has_bvh_spheres() || !quadrics.empty();
     }
     [[nodiscard]] bool has_bvh_spheres() const {
         return spheres.size() > static_cast<std::size_t>(facts.sphere_count);

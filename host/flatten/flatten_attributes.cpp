@@ -1,7 +1,9 @@
 #include "scene/mesh_attributes.h"
 #include "shape_parts.h"
 
-#include <utility>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -16,6 +18,15 @@ glm::dvec3 value_of(const MeshAttribute &attribute, std::size_t index) {
     const float *value = &attribute.values[index * attribute.channels];
     return attribute.channels == 1 ? glm::dvec3(value[0])
                                    : glm::dvec3(value[0], value[1], value[2]);
+}
+
+/// The attributes that a texture shows.
+std::vector<std::string> names_of(const Texture &texture) {
+    std::vector<std::string> names;
+    for (const std::string &name : {texture.attribute, texture.product, texture.coordinates})
+        if (!name.empty())
+            names.push_back(name);
+    return names;
 }
 
 void append(const glm::dvec3 &value, FlatScene &flat) {
@@ -43,8 +54,9 @@ void number_attributes(Flattening &work) {
     const auto take = [&](const std::vector<Shape> &shapes) {
         for (const Shape &shape : shapes)
             for (const int texture : shape.attribute_textures)
-                work.attribute_index.try_emplace(texture_of(work, texture).attribute,
-                                                 static_cast<uint>(work.attribute_index.size()));
+                for (const std::string &name : names_of(texture_of(work, texture)))
+                    work.attribute_index.try_emplace(
+                        name, static_cast<uint>(work.attribute_index.size()));
     };
     take(work.scene.shapes);
     for (const ShapeGroup &group : work.scene.groups)
@@ -52,11 +64,13 @@ void number_attributes(Flattening &work) {
 }
 
 void append_attributes(const Shape &shape, const PlacedMesh &placed, Flattening &work) {
-    std::map<std::string, bool> done;
-    for (const int texture : shape.attribute_textures) {
-        const std::string &name = texture_of(work, texture).attribute;
+    std::set<std::string> names;
+    for (const int texture : shape.attribute_textures)
+        for (const std::string &name : names_of(texture_of(work, texture)))
+            names.insert(name);
+    for (const std::string &name : names) {
         const MeshAttribute *attribute = find_attribute(*shape.mesh, name);
-        if (attribute == nullptr || std::exchange(done[name], true))
+        if (attribute == nullptr)
             continue;
         const uint first = is_face_attribute(name) ? placed.first_triangle : placed.first_vertex;
         work.flat.attribute_places[placed.shape * work.attribute_index.size() +

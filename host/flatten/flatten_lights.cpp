@@ -29,12 +29,13 @@ glm::dvec3 in_single(const clr_real (&v)[3]) {
 }
 
 /// Mean luminance of an attribute's values, by vertex or triangle.
-double mean_luminance(const MeshAttribute &attribute) {
+double mean_luminance(const MeshAttribute &attribute, const Rgb &scale) {
     const std::size_t count = attribute.values.size() / attribute.channels;
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const float *value = &attribute.values[i * attribute.channels];
-        sum += attribute.channels == 1 ? value[0] : luminance({value[0], value[1], value[2]});
+        sum += luminance(
+            scale * (attribute.channels == 1 ? Rgb(value[0]) : Rgb(value[0], value[1], value[2])));
     }
     return count > 0 ? sum / static_cast<double>(count) : 0;
 }
@@ -44,7 +45,7 @@ double mean_luminance(const Texture &texture, const Shape &shape) {
     if (texture.kind != TextureKind::attribute)
         return mean_luminance(texture);
     const MeshAttribute *attribute = find_attribute(*shape.mesh, texture.attribute);
-    return attribute == nullptr ? 0 : texture.scale * mean_luminance(*attribute);
+    return attribute == nullptr ? 0 : mean_luminance(*attribute, texture.scale);
 }
 
 /// The cone of the normals by which a triangle shines: its own, or those of its vertices.
@@ -185,6 +186,33 @@ void add_planar(const Flattening &work, const AreaEmitter &emitter, EmitterInfo 
     list.add(light, extent);
 }
 
+/// An ellipsoid, a cylinder or a disk of the BVH.
+void add_quadric(const Flattening &work, const AreaEmitter &emitter, EmitterInfo &info,
+                 LightList &list) {
+    const FlatScene &flat = work.flat;
+    Light light = emitter.base;
+    light.prim = info.first_prim = work.primitive_of_shape.at(emitter.shape);
+    info.light = list.size();
+    info.kind = light.kind = CLR_LIGHT_QUADRIC;
+    const Quadric &q = flat.quadrics[light.prim - flat.frame.prim_quadric];
+    const QuadricExtent extent = quadric_extent(q);
+    // An ellipsoid that shines inwards is met by chance only: nothing outside sees it.
+    if (!(emitter.radiance > 0) || (q.kind == CLR_QUADRIC_ELLIPSOID && q.orientation < 0))
+        return;
+    info.density = 1;
+    const glm::dvec3 center = in_single(q.center);
+    LightExtent bounds{center - extent.half,
+                       center + extent.half,
+                       {0, 0, 1},
+                       -1,
+                       extent.projected_area * emitter.radiance};
+    if (q.kind == CLR_QUADRIC_DISK) {
+        bounds.axis = glm::normalize(in_single(q.z)) * in_single(q.orientation);
+        bounds.cosine = 1;
+    }
+    list.add(light, bounds);
+}
+
 void add_area(Flattening &work, std::size_t index, LightList &list) {
     const Emitter &source = work.scene.emitters[index];
     EmitterInfo &info = work.flat.emitters[index];
@@ -203,6 +231,9 @@ void add_area(Flattening &work, std::size_t index, LightList &list) {
         break;
     case ShapeTest::planar:
         add_planar(work, emitter, info, list);
+        break;
+    case ShapeTest::quadric:
+        add_quadric(work, emitter, info, list);
         break;
     case ShapeTest::triangles:
         add_triangles(work, emitter, info, list);
@@ -237,7 +268,8 @@ double shadow_free_distance(const LightExtent &light, const Sphere &sphere) {
 /// its own way, and large spheres may be shown never to be.
 void set_sole_light(const LightExtent &extent, FlatScene &flat) {
     Light &sole = flat.lights.front();
-    if (sole.kind == CLR_LIGHT_PLANAR || sole.kind == CLR_LIGHT_TRIANGLE)
+    if (sole.kind == CLR_LIGHT_PLANAR || sole.kind == CLR_LIGHT_TRIANGLE ||
+        sole.kind == CLR_LIGHT_QUADRIC)
         store(sole.position, (extent.lower + extent.upper) * 0.5);
     const glm::dvec3 diagonal = extent.upper - extent.lower;
     flat.frame.final_distance2 = static_cast<clr_real>(glm::dot(diagonal, diagonal));
@@ -298,16 +330,16 @@ double mean_luminance(const Texture &texture) {
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i)
-        sum += luminance(texel_color(image, i, texture.format));
+        sum += luminance(texture.scale * texel_color(image, i, texture.format));
     return sum / static_cast<double>(count);
 }
 
 void flatten_lights(Flattening &work) {
     FlatScene &flat = work.flat;
-    flat.emitters.resize(work.scene.emitters.size());
+    flat.emitters.resize(work.is_black() ? 0 : work.scene.emitters.size());
     LightList list;
     double map_power = 0;
-    for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {
+    for (std::size_t i = 0; i < flat.emitters.size(); ++i) {
         const Emitter &emitter = work.scene.emitters[i];
         switch (emitter.kind) {
         case EmitterKind::point:

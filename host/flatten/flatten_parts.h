@@ -33,10 +33,15 @@ struct Flattening {
     bool vertex_normals = false;    ///< some mesh has them, so all have the arrays
     bool spheres_in_bvh = false;    ///< there are too many to test them one by one
     bool rectangles_in_bvh = false; ///< likewise, with the disks; as triangles
+    bool disks_in_bvh = false;      ///< likewise, as quadrics
 
     /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
     [[nodiscard]] bool wants(const char *name) const {
         return is_forced(options.forced_features, name);
+    }
+    /// Whether paths have no edges, which bring nothing: not even what shines at the camera.
+    [[nodiscard]] bool is_black() const {
+        return scene.integrator.kind == IntegratorKind::path && scene.integrator.max_depth == 0;
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
     [[nodiscard]] bool needs_uvs() const { return flat.needs_uvs() || wants("HAS_UVS"); }
@@ -62,7 +67,7 @@ int dielectric_shades(const std::vector<Material> &materials);
 /// (`absent` for none) goes to constant[0..2].
 uint flatten_texture(Flattening &work, int texture, Rgb absent, clr_real *constant);
 
-/// Spheres, planars, meshes and the BVH; shape infos name emitters by Scene's index.
+/// Spheres, planars, meshes, quadrics and the BVH; shape infos name emitters by Scene's index.
 void flatten_shapes(Flattening &work);
 
 /// The meshes of groups, behind those of the scene, and the places of their instances.
@@ -73,6 +78,9 @@ void flatten_lights(Flattening &work);
 
 /// The alpha of camera rays that leave the scene for an environment.
 clr_real environment_alpha(const Integrator &integrator);
+
+/// The ways of light over mirrors and through glass; asked when all else is flattened.
+void flatten_specular_connectors(Flattening &work);
 
 /// The environment: a constant one, or a map with its table, of which only the probability of its
 /// light is left to fill. `power` becomes the integral over all directions of the luminance that

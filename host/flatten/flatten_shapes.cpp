@@ -191,10 +191,11 @@ void flatten_shapes(Flattening &work) {
                              [=](const Shape &s) { return ((s.kind == kinds) || ...); });
     };
     work.spheres_in_bvh = count(ShapeKind::sphere) > few_primitives;
+    work.disks_in_bvh = count(ShapeKind::disk) > few_primitives;
     work.rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) > few_primitives;
 
-    // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles, and
-    // spheres that are too many to test one by one.
+    // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles,
+    // spheres that are too many to test one by one, quadrics.
     flatten_lane_wise_spheres(work);
     flatten_planars(work);
     flatten_meshes(work);
@@ -202,6 +203,7 @@ void flatten_shapes(Flattening &work) {
     flat.frame.prim_bvh_sphere =
         static_cast<uint>(flat.spheres.size() + flat.planars.size() + flat.corners.size());
     flatten_bvh_spheres(work);
+    flatten_quadrics(work);
 
     make_records(work);
 }

@@ -46,6 +46,25 @@ uint offset_of_image(const Texture &texture, Flattening &work) {
     return append_texels(*texture.bitmap, texture.format, work.flat);
 }
 
+uint wrap_of(TextureWrap wrap) {
+    return wrap == TextureWrap::repeat   ? CLR_WRAP_REPEAT
+           : wrap == TextureWrap::mirror ? CLR_WRAP_MIRROR
+                                         : CLR_WRAP_CLAMP;
+}
+
+/// What becomes of the value of a bitmap or an attribute.
+void describe_factors(const Texture &source, const Flattening &work, TextureInfo &t) {
+    const auto number_of = [&](const std::string &attribute) {
+        return attribute.empty() ? CLR_NONE : work.attribute_index.at(attribute);
+    };
+    store(t.color0, source.scale);
+    t.attributes = static_cast<uint>(work.attribute_index.size());
+    t.product = number_of(source.product);
+    t.coordinates = number_of(source.coordinates);
+    t.is_cut = source.cutoff ? 1 : 0;
+    t.color1[0] = static_cast<clr_real>(source.cutoff.value_or(0));
+}
+
 TextureInfo describe(const Texture &source, uint offset, const Flattening &work) {
     TextureInfo t{};
     for (int row = 0; row < 2; ++row)
@@ -57,26 +76,26 @@ TextureInfo describe(const Texture &source, uint offset, const Flattening &work)
         store(t.color1, source.color1);
         return t;
     }
+    describe_factors(source, work, t);
     if (source.kind == TextureKind::attribute) {
         t.kind = CLR_TEXTURE_ATTRIBUTE;
         t.offset = work.attribute_index.at(source.attribute);
-        t.width = static_cast<uint>(work.attribute_index.size());
         t.nearest = is_face_attribute(source.attribute) ? 1 : 0;
-        t.color0[0] = static_cast<clr_real>(source.scale);
         return t;
     }
     const Image &image = *source.bitmap;
     t.kind = image.type == PixelType::u8 ? CLR_TEXTURE_BITMAP_U8 : CLR_TEXTURE_BITMAP_F32;
-    t.wrap = source.wrap == TextureWrap::repeat   ? CLR_WRAP_REPEAT
-             : source.wrap == TextureWrap::mirror ? CLR_WRAP_MIRROR
-                                                  : CLR_WRAP_CLAMP;
+    t.wrap = wrap_of(source.wrap);
+    t.wrap_v = wrap_of(source.wrap_v.value_or(source.wrap));
     t.width = static_cast<uint>(image.width);
     t.height = static_cast<uint>(image.height);
     t.offset = offset;
     t.nearest = source.filter == TextureFilter::nearest ? 1 : 0;
     t.decode = (source.format.raw ? CLR_DECODE_LINEAR : CLR_DECODE_SRGB) +
                (source.format.half ? CLR_DECODE_HALF : 0u);
-    t.is_number = source.is_number ? 1 : 0;
+    if (source.is_number)
+        t.number = source.channel == none ? CLR_TEXEL_LUMINANCE
+                                          : CLR_TEXEL_RED + static_cast<uint>(source.channel);
     return t;
 }
 

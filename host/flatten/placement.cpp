@@ -79,11 +79,16 @@ std::vector<Part> parts_of(const Scene &scene, const std::vector<Box> &boxes,
             add_mesh(*whole.shape, weight, parts);
             break;
         case ShapeKind::sphere:
+        case ShapeKind::ellipsoid:
         case ShapeKind::rectangle:
         case ShapeKind::disk:
             // A sphere's radius is a cube root, which is not rounded alike at every scale: its
             // center does not go by its box.
             parts.push_back({glm::dvec3(whole.shape->to_world[3]), whole.size, weight});
+            break;
+        case ShapeKind::cylinder:
+            parts.push_back(
+                {glm::dvec3(whole.shape->to_world * glm::dvec4(0, 0, 0.5, 1)), whole.size, weight});
             break;
         }
     }

@@ -90,7 +90,17 @@ public:
         above_ |= distance + radius > tolerance;
     }
 
+    /// What reaches so far along the normal, and lies in the box.
+    void add(const Range &range, const Box &box) {
+        const double tolerance =
+            touching_ + lost_by_doubles * std::max(largest(box.low), largest(box.high));
+        below_ |= range.low < -tolerance;
+        above_ |= range.high > tolerance;
+    }
+
     [[nodiscard]] bool both() const { return below_ && above_; }
+    [[nodiscard]] const glm::dvec3 &normal() const { return normal_; }
+    [[nodiscard]] const glm::dvec3 &origin() const { return origin_; }
 
 private:
     glm::dvec3 normal_, origin_;
@@ -139,6 +149,10 @@ bool ShadowlessPlanars::is_outer(const Shape &planar) const {
         switch (shape.kind) {
         case ShapeKind::sphere:
             sides.add(glm::dvec3(shape.to_world[3]), glm::length(glm::dvec3(shape.to_world[0])));
+            break;
+        case ShapeKind::ellipsoid:
+        case ShapeKind::cylinder:
+            sides.add(shape_range(shape, Box{}, sides.origin(), sides.normal()), shape_box(shape));
             break;
         case ShapeKind::rectangle:
         case ShapeKind::disk: // which lies within the rectangle around it

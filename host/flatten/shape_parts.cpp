@@ -28,7 +28,10 @@ ShapeTest test_of(const Shape &shape, const Flattening &work) {
     case ShapeKind::rectangle:
         return work.rectangles_in_bvh ? ShapeTest::triangles : ShapeTest::planar;
     case ShapeKind::disk:
-        return ShapeTest::planar;
+        return work.disks_in_bvh ? ShapeTest::quadric : ShapeTest::planar;
+    case ShapeKind::ellipsoid:
+    case ShapeKind::cylinder:
+        return ShapeTest::quadric;
     case ShapeKind::mesh:
         break;
     }
@@ -42,8 +45,9 @@ bool is_inverted(const Shape &shape) {
 
 uint append_shape(const Shape &shape, Flattening &work) {
     FlatScene &flat = work.flat;
-    flat.shapes.push_back({work.sides_of_bsdf.at(shape.bsdf),
-                           shape.emitter == none ? CLR_NONE : static_cast<uint>(shape.emitter)});
+    flat.shapes.push_back(
+        {work.sides_of_bsdf.at(shape.bsdf),
+         shape.emitter == none || work.is_black() ? CLR_NONE : static_cast<uint>(shape.emitter)});
     flat.attribute_places.resize(flat.shapes.size() * work.attribute_index.size());
     if (work.needs_uvs()) {
         glm::dmat3 to_local{1.0};

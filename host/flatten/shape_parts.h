@@ -14,6 +14,7 @@ enum class ShapeTest {
     sphere,     ///< every ray, lane-wise
     bvh_sphere, ///< in the BVH
     planar,     ///< every ray, lane-wise
+    quadric,    ///< in the BVH
     triangles,  ///< in the BVH
 };
 
@@ -22,6 +23,15 @@ ShapeTest test_of(const Shape &shape, const Flattening &work);
 
 /// The planars that every ray tests.
 void flatten_planars(Flattening &work);
+/// The ellipsoids, cylinders and disks of the BVH, the last of its primitives.
+void flatten_quadrics(Flattening &work);
+/// What the light tree knows of a quadric that emits: how far it reaches from its center, and the
+/// largest area of its projections.
+struct QuadricExtent {
+    glm::dvec3 half{0.0};
+    double projected_area = 0;
+};
+QuadricExtent quadric_extent(const Quadric &quadric);
 /// What becomes triangles.
 void flatten_meshes(Flattening &work);
 /// The triangles of a mesh or a rectangle, in the coordinates of `placement`.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace clrender {
@@ -39,6 +40,10 @@ struct Image {
 /// if `referrer` has a file name, else with the image's own name.
 Image read_image(const std::string &path, const SourceLocation &referrer = {}, bool raw = false);
 
+/// The same of `bytes` in memory, which `name` says where they are from.
+Image decode_image(std::string_view bytes, const std::string &name,
+                   const SourceLocation &referrer = {}, bool raw = false);
+
 /// One named 32-bit float plane set of an EXR file: `name` is "" for the main layer (channels
 /// R G B [A], X Y Z [A] or Y [A]), else the layer prefix ("variance" gives variance.R ...).
 struct ImageLayer {
@@ -54,6 +59,13 @@ struct ImageLayer {
 void write_image(const std::string &path, const Image &image, double exposure = 0,
                  const std::map<std::string, std::string> &metadata = {},
                  const std::vector<ImageLayer> &extra_layers = {}, bool fast = false);
+
+/// Encodes as write_image() does and leaves no file: for the time it takes. What fails then fails
+/// when the picture is written.
+void try_write_image(const std::string &path, const Image &image, double exposure = 0);
+
+/// So many rows of a picture of floats, from its middle; all where it has no more.
+Image middle_rows(const Image &image, int rows);
 
 /// True if `write_image` knows the extension of `path`.
 bool is_writable_image_path(const std::string &path);

@@ -43,7 +43,11 @@ Image decode(std::string_view bytes, const std::string &path, bool raw,
 } // namespace
 
 Image read_image(const std::string &path, const SourceLocation &referrer, bool raw) {
-    const std::string bytes = read_input_file(path, referrer);
+    return decode_image(read_input_file(path, referrer), path, referrer, raw);
+}
+
+Image decode_image(std::string_view bytes, const std::string &path, const SourceLocation &referrer,
+                   bool raw) {
     const bool is_named = !referrer.file.empty();
     std::string reason;
     try {

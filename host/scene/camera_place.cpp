@@ -48,7 +48,7 @@ bool encloses(const Shape &shape, const glm::dvec3 &point) {
         const double winding = winding_number(shape, point);
         return (shape.flip_normals ? -winding : winding) > 0.99;
     }
-    if (shape.kind != ShapeKind::sphere)
+    if (shape.kind != ShapeKind::sphere && shape.kind != ShapeKind::ellipsoid)
         return false;
     const bool outwards = (glm::determinant(glm::dmat3(shape.to_world)) > 0) != shape.flip_normals;
     return outwards &&

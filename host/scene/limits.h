@@ -26,4 +26,8 @@ inline constexpr double max_filter_parameter = 100;
 /// light that nothing absorbs does not go on for ever. Unbiased, as roulette is.
 inline constexpr int max_depth_without_roulette = 4096;
 
+/// Where no depth is stated, roulette is a weight window, which lets all paths on that are not
+/// light; from this many segments on it ends some of every path. Unbiased, as roulette is.
+inline constexpr int window_end_depth = 32;
+
 } // namespace clrender

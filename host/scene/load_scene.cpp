@@ -1,8 +1,10 @@
 #include "load_scene.h"
 
+#include "../input_file.h"
 #include "../log.h"
 #include "../memory_limit.h"
 #include "camera_place.h"
+#include "gltf_scene.h"
 #include "mitsuba_xml.h"
 #include "model_scene.h"
 
@@ -20,12 +22,16 @@ Scene read_scene(const std::string &path, const LoadOptions &options) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".xml")
         return load_mitsuba_xml(path, options);
-    if (extension != ".obj" && extension != ".ply")
-        throw InputError({path, 0}, "unknown kind of scene, expected a .xml, .obj or .ply file");
+    const bool is_gltf = extension == ".gltf" || extension == ".glb";
+    if (!is_gltf && extension != ".obj" && extension != ".ply")
+        throw InputError({path, 0},
+                         "unknown kind of scene, expected a .xml, .gltf, .glb, .obj or .ply file");
 
     for (const auto &[name, value] : options.defines)
         log::warn(std::string("-D ").append(name).append(": nothing in ").append(path) +
                   " uses it");
+    if (is_gltf)
+        return load_gltf(path, options);
     if (options.sensor.value_or(0) != 0)
         throw InputError({path, 0},
                          "the model has a camera of its own alone, expected no --sensor");
@@ -69,6 +75,7 @@ std::uint64_t flat_bytes_estimate(const Scene &scene) {
 
 Scene load_scene(const std::string &path, const LoadOptions &options) {
     forget_memory_claims();
+    forget_input_files();
     Scene scene = read_scene(path, options);
     if (const std::string reason = claim_memory(flat_bytes_estimate(scene)); !reason.empty())
         throw InputError({path, 0}, "the scene " + reason);

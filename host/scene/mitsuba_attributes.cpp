@@ -44,7 +44,7 @@ void check_attribute(const Mesh &mesh, const Texture &texture, SpectrumUse use,
     if (texture.is_number && attribute->channels != 1)
         throw InputError(where, subject + " of the " + shape +
                                     " has 3 channels where a number is asked for, expected 1");
-    const double largest = largest_value(*attribute) * texture.scale;
+    const double largest = largest_value(*attribute) * texture.scale.r;
     if (largest > max_radiance)
         throw InputError(where,
                          fmt::format("{} of the {} is too large, expected no value above {:g}",
@@ -78,10 +78,11 @@ int SceneReader::read_mesh_attribute(Properties &properties) {
                                     ", expected the name of an attribute, which begins with "
                                     "\"vertex_\" or \"face_\"");
     texture.attribute = *name;
-    texture.scale = properties.number("scale", 1);
-    if (!(texture.scale >= 0 && texture.scale <= max_radiance))
+    const double scale = properties.number("scale", 1);
+    texture.scale = Rgb(scale);
+    if (!(scale >= 0 && scale <= max_radiance))
         properties.fail("scale", fmt::format("is {:g}, expected a number from 0 to {:g}",
-                                             texture.scale, max_radiance));
+                                             scale, max_radiance));
     files_.want_attribute(texture.attribute);
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;

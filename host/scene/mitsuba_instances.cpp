@@ -2,6 +2,7 @@
 
 #include "mitsuba_scene.h"
 #include "mitsuba_transform.h"
+#include "similarity.h"
 
 #include <cmath>
 
@@ -9,9 +10,9 @@ namespace clrender::mitsuba {
 
 namespace {
 
-/// Spheres and disks are no triangles: the scene gets one for each instance.
+/// Spheres, ellipsoids, cylinders and disks are no triangles: the scene gets one for each instance.
 bool is_copied(const Shape &shape) {
-    return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::disk;
+    return shape.kind != ShapeKind::rectangle && shape.kind != ShapeKind::mesh;
 }
 
 } // namespace
@@ -77,16 +78,15 @@ void SceneReader::read_instance(int object) {
     if (!content.shapes.shapes.empty())
         scene_.instances.push_back({group, glm::dmat4x3(to_world)});
     for (Shape copy : content.copied) {
-        if (copy.kind == ShapeKind::sphere && !is_similarity(glm::dmat3(to_world)))
-            properties.fail("to_world", "makes an ellipsoid of the sphere at " + copy.where.str() +
-                                            ", which is not supported, expected a uniform scale "
-                                            "with a rotation");
         // A sphere that is mirrored by its own transform turns inside out, one by that of its
         // instance does not.
         const bool mirrors = glm::determinant(glm::dmat3(to_world)) < 0;
-        if (copy.kind == ShapeKind::sphere && mirrors)
+        if (copy.kind != ShapeKind::disk && mirrors)
             copy.flip_normals = !copy.flip_normals;
         copy.to_world = to_world * copy.to_world;
+        if (copy.kind == ShapeKind::sphere && !is_similarity(glm::dmat3(copy.to_world)))
+            copy.kind = ShapeKind::ellipsoid;
+        check_thickness(properties, copy);
         scene_.shapes.push_back(std::move(copy));
     }
 }

@@ -1,5 +1,5 @@
-/// Shapes: sphere, rectangle, disk, cube, obj, ply, serialized; groups and instances lead to
-/// mitsuba_instances.cpp.
+/// Shapes: sphere, cylinder, rectangle, disk, cube, obj, ply, serialized; groups and instances lead
+/// to mitsuba_instances.cpp.
 
 #include "cube_mesh.h"
 #include "mesh_normals.h"
@@ -7,6 +7,7 @@
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
 #include "shape_bounds.h"
+#include "similarity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,9 @@ namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> shape_types{"sphere", "rectangle",  "disk",       "cube",    "obj",
-                                           "ply",    "serialized", "shapegroup", "instance"};
+const std::vector<std::string> shape_types{"sphere",     "cylinder", "rectangle", "disk",
+                                           "cube",       "obj",      "ply",       "serialized",
+                                           "shapegroup", "instance"};
 
 void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
     lowest = glm::min(lowest, point);
@@ -27,16 +29,21 @@ void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
 
 } // namespace
 
-bool is_similarity(const glm::dmat3 &m) {
-    constexpr double tolerance = 1e-4;
-    const double size = glm::length(m[0]);
-    for (int i = 0; i < 3; ++i) {
-        if (std::abs(glm::length(m[i]) - size) > tolerance * size)
-            return false;
-        if (std::abs(glm::dot(m[i], m[(i + 1) % 3])) > tolerance * size * size)
-            return false;
-    }
-    return true;
+/// The frame whose third axis is n, as Mitsuba has it (Duff et al., "Building an orthonormal basis,
+/// revisited", JCGT 2017).
+glm::dmat3 frame_of(const glm::dvec3 &n) {
+    const double sign = std::copysign(1.0, n.z);
+    const double a = -1 / (sign + n.z);
+    const double b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}
+
+void check_thickness(const Properties &properties, const Shape &shape) {
+    if (is_nearly_singular(glm::dmat3(shape.to_world)))
+        throw InputError(properties.where(),
+                         properties.description() +
+                             " is stretched more than 1e8 times as much one way as another, "
+                             "expected less");
 }
 
 void SceneReader::read_shape(int object) {
@@ -61,6 +68,8 @@ void SceneReader::read_shape(int object) {
     properties.ignore({"silhouette_sampling_weight"});
     if (type == "sphere") {
         read_sphere(properties, shape);
+    } else if (type == "cylinder") {
+        read_cylinder(properties, shape);
     } else if (type == "rectangle") {
         shape.kind = ShapeKind::rectangle;
     } else if (type == "disk") {
@@ -84,10 +93,27 @@ void SceneReader::read_sphere(Properties &properties, Shape &shape) {
     const double radius = properties.number("radius", 1);
     if (!(radius > 0))
         properties.fail("radius", "is not positive, expected a number above 0");
-    if (!is_similarity(glm::dmat3(shape.to_world)))
-        properties.fail("to_world", "is not a uniform scale with a rotation, expected one: an "
-                                    "ellipsoid is not supported");
     shape.to_world = glm::scale(glm::translate(shape.to_world, center), glm::dvec3(radius));
+    if (!is_similarity(glm::dmat3(shape.to_world)))
+        shape.kind = ShapeKind::ellipsoid;
+    check_thickness(properties, shape);
+}
+
+void SceneReader::read_cylinder(Properties &properties, Shape &shape) {
+    shape.kind = ShapeKind::cylinder;
+    const glm::dvec3 from = properties.point("p0").value_or(glm::dvec3(0));
+    const glm::dvec3 to = properties.point("p1").value_or(glm::dvec3(0, 0, 1));
+    const double radius = properties.number("radius", 1);
+    if (!(radius > 0))
+        properties.fail("radius", "is not positive, expected a number above 0");
+    const double length = glm::length(to - from);
+    if (!(length > 0))
+        throw InputError(properties.where(), properties.description() +
+                                                 " has no length, expected p0 and p1 that differ");
+    shape.to_world *= glm::translate(glm::dmat4(1.0), from) *
+                      glm::dmat4(frame_of((to - from) / length)) *
+                      glm::scale(glm::dmat4(1.0), glm::dvec3(radius, radius, length));
+    check_thickness(properties, shape);
 }
 
 void SceneReader::read_mesh_file(Properties &properties, Shape &shape) {
@@ -155,6 +181,13 @@ bool bounds_of(const Scene &scene, glm::dvec3 &lowest, glm::dvec3 &highest) {
         if (shape.kind == ShapeKind::mesh) {
             for (const glm::dvec3 &position : shape.mesh->positions)
                 extend(lowest, highest, glm::dvec3(m * glm::dvec4(position, 1)));
+            continue;
+        }
+
+        if (shape.kind == ShapeKind::ellipsoid || shape.kind == ShapeKind::cylinder) {
+            const Box box = shape_box(shape);
+            extend(lowest, highest, box.low);
+            extend(lowest, highest, box.high);
             continue;
         }
 

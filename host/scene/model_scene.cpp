@@ -1,15 +1,16 @@
 #include "model_scene.h"
 
+#include "../log.h"
 #include "mesh_attributes.h"
 #include "mesh_io.h"
+#include "model_surroundings.h"
 #include "scene_files.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fmt/core.h>
 #include <limits>
 #include <map>
 #include <utility>
@@ -19,59 +20,16 @@ namespace clrender {
 
 namespace {
 
-/// A sphere around all vertices.
-struct Bounds {
-    glm::dvec3 center{0.0};
-    double radius = 1;
-    double floor = 0; ///< smallest y
-};
-
-Bounds bounds_of(const std::vector<ObjPart> &parts) {
-    glm::dvec3 low(std::numeric_limits<double>::infinity());
-    glm::dvec3 high(-std::numeric_limits<double>::infinity());
-    for (const ObjPart &part : parts)
-        for (const glm::dvec3 &p : part.mesh.positions) {
-            low = glm::min(low, p);
-            high = glm::max(high, p);
-        }
-    Bounds bounds;
-    bounds.center = 0.5 * (low + high);
-    bounds.floor = low.y;
-    double radius = 0;
-    for (const ObjPart &part : parts)
-        for (const glm::dvec3 &p : part.mesh.positions)
-            radius = std::max(radius, glm::length(p - bounds.center));
-    bounds.radius = radius > 0 ? radius : 1;
-    return bounds;
-}
-
-int add_color(Scene &scene, const Rgb &color) {
-    Texture texture;
-    texture.value = color;
-    scene.textures.push_back(texture);
-    return static_cast<int>(scene.textures.size()) - 1;
-}
-
-int add_bsdf(Scene &scene, const Bsdf &bsdf) {
-    scene.bsdfs.push_back(bsdf);
-    return static_cast<int>(scene.bsdfs.size()) - 1;
-}
-
-/// The same on both sides: models are seldom closed.
-int add_twosided(Scene &scene, const BsdfModel &model) {
-    const int side = add_bsdf(scene, {model, {}, {}});
-    return add_bsdf(scene, {TwosidedBsdf{side, side}, {}, {}});
-}
-
-int add_diffuse(Scene &scene, int reflectance) {
-    return add_twosided(scene, DiffuseBsdf{reflectance});
-}
-
 /// Textures that may turn out not to be readable, and the colour that then takes their place.
 using TextureColors = std::vector<std::pair<int, Rgb>>;
 
-Rgb reflectance(const Rgb &colour) {
-    return glm::clamp(colour, 0.0, 1.0);
+/// A colour of a material, which reflects all light at most.
+Rgb reflectance(const ObjMaterial &material, const Rgb &colour) {
+    const Rgb held = glm::clamp(colour, 0.0, 1.0);
+    if (held != colour)
+        log::warn(fmt::format("material \"{}\": its colour {:g} {:g} {:g} is held to 0 to 1",
+                              material.name, colour.r, colour.g, colour.b));
+    return held;
 }
 
 /// Makes BSDFs of the materials of an MTL file.
@@ -88,8 +46,8 @@ public:
             return add_named(material, DielectricBsdf{{ior > 1 ? ior : 1.5, 1}});
         }
         case ObjSurface::mirror:
-            return add_named(material,
-                             ConductorBsdf{add_color(scene_, reflectance(material.specular))});
+            return add_named(material, ConductorBsdf{add_color(
+                                           scene_, reflectance(material, material.specular))});
         case ObjSurface::rough_metal:
             return add_opaque(material, rough_metal(material));
         case ObjSurface::glossy:
@@ -133,7 +91,7 @@ private:
 
     /// Kd, or the texture in its place.
     int diffuse(const ObjMaterial &material) {
-        const Rgb colour = reflectance(material.diffuse);
+        const Rgb colour = reflectance(material, material.diffuse);
         return material.diffuse_map.is_there() ? map(material.diffuse_map, colour, false)
                                                : add_color(scene_, colour);
     }
@@ -173,13 +131,13 @@ private:
         RoughConductorBsdf bsdf;
         bsdf.microfacets.alpha_u = bsdf.microfacets.alpha_v =
             add_color(scene_, Rgb(alpha(material)));
-        bsdf.specular_reflectance = add_color(scene_, reflectance(material.specular));
+        bsdf.specular_reflectance = add_color(scene_, reflectance(material, material.specular));
         return bsdf;
     }
 
     /// A boundary that reflects .08 Ks straight on, as modelling programs export their dielectrics.
     BsdfModel glossy(const ObjMaterial &material) {
-        const Rgb specular = reflectance(material.specular);
+        const Rgb specular = reflectance(material, material.specular);
         const double strength = std::max({specular.r, specular.g, specular.b});
         RoughPlasticBsdf bsdf;
         const double root = std::sqrt(0.08 * strength);
@@ -221,32 +179,6 @@ void replace_missing(Scene &scene, const TextureColors &colors) {
         texture.is_number = is_number;
         texture.value = color;
     }
-}
-
-Shape &add_shape(Scene &scene, ShapeKind kind, const glm::dmat4 &to_world, int bsdf) {
-    Shape shape;
-    shape.kind = kind;
-    shape.to_world = to_world;
-    shape.bsdf = bsdf;
-    scene.shapes.push_back(std::move(shape));
-    return scene.shapes.back();
-}
-
-/// Makes the last shape shine.
-void add_light(Scene &scene, const Rgb &radiance) {
-    Emitter emitter;
-    emitter.radiance = add_color(scene, radiance);
-    emitter.shape = static_cast<int>(scene.shapes.size()) - 1;
-    scene.shapes.back().emitter = static_cast<int>(scene.emitters.size());
-    scene.emitters.push_back(emitter);
-}
-
-/// +z of the object looks along `direction`, +y upwards.
-glm::dmat4 look_along(const glm::dvec3 &origin, const glm::dvec3 &direction) {
-    const glm::dvec3 z = glm::normalize(direction);
-    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), z));
-    const glm::dvec3 y = glm::cross(z, x);
-    return {glm::dvec4(x, 0), glm::dvec4(y, 0), glm::dvec4(z, 0), glm::dvec4(origin, 1)};
 }
 
 /// The attribute that a bare model is coloured by, with its colours made linear; null for none.
@@ -294,45 +226,10 @@ void add_model(Scene &scene, ObjFile &model) {
         shape.id = part.material;
         if (material != nullptr &&
             std::max({material->emission.r, material->emission.g, material->emission.b}) > 0)
-            add_light(scene, glm::max(material->emission, 0.0));
+            add_area_light(scene, add_color(scene, glm::max(material->emission, 0.0)));
     }
     files.read();
     replace_missing(scene, colors);
-}
-
-void add_surroundings(Scene &scene, const Bounds &bounds) {
-    // The ground reaches to what looks like a horizon.
-    const double r = bounds.radius;
-    const glm::dvec3 below(bounds.center.x, bounds.floor, bounds.center.z);
-    glm::dmat4 ground = glm::translate(glm::dmat4(1.0), below);
-    ground = glm::rotate(ground, glm::radians(-90.0), glm::dvec3(1, 0, 0));
-    ground = glm::scale(ground, glm::dvec3(60 * r));
-    add_shape(scene, ShapeKind::disk, ground,
-              add_diffuse(scene, add_color(scene, Rgb(0.55, 0.55, 0.56))));
-
-    // A warm disk as wide as the model, above to the left of the camera, and a cool dim sky.
-    const glm::dvec3 to_light = glm::normalize(glm::dvec3(-0.55, 1.0, 0.75));
-    const glm::dvec3 light_center = bounds.center + 4.5 * r * to_light;
-    add_shape(scene, ShapeKind::disk,
-              glm::scale(look_along(light_center, -to_light), glm::dvec3(1.5 * r)),
-              add_diffuse(scene, add_color(scene, Rgb(0.0))));
-    add_light(scene, 9.0 * Rgb(1.0, 0.94, 0.86));
-    Emitter sky;
-    sky.kind = EmitterKind::constant;
-    sky.radiance = add_color(scene, Rgb(0.36, 0.4, 0.46));
-    scene.emitters.push_back(sky);
-}
-
-void add_camera(Scene &scene, const Bounds &bounds) {
-    // The sphere touches the upper and lower edge of the picture, with a little air.
-    Sensor &sensor = scene.sensor;
-    sensor.fov = 35;
-    const double aspect = static_cast<double>(scene.film.height) / scene.film.width;
-    const double half_height = std::atan(std::tan(glm::radians(0.5 * sensor.fov)) * aspect);
-    const double distance = 1.02 * bounds.radius / std::sin(half_height);
-    const glm::dvec3 to_camera = glm::normalize(glm::dvec3(0.55, 0.38, 1.0));
-    sensor.to_world = look_along(bounds.center + distance * to_camera, -to_camera);
-    sensor.focus_distance = distance;
 }
 
 } // namespace
@@ -354,9 +251,10 @@ Scene load_model(const std::string &path) {
     scene.film.crop_height = scene.film.height;
     scene.integrator.max_depth = 8;
     scene.sample_count = 64;
-    const Bounds bounds = bounds_of(model.parts);
     add_model(scene, model);
-    add_surroundings(scene, bounds);
+    const ModelBounds bounds = bounds_of_meshes(scene);
+    add_ground(scene, bounds);
+    add_lights(scene, bounds);
     add_camera(scene, bounds);
     return scene;
 }

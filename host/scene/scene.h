@@ -28,15 +28,20 @@ enum class TextureWrap { repeat, mirror, clamp };
 struct Texture {
     TextureKind kind = TextureKind::constant;
     bool is_number = false;              ///< one value is asked for, not a colour: the mean of a
-                                         ///< constant one, the luminance of a bitmap
+                                         ///< constant one, the luminance of a bitmap, or a channel
+    int channel = none;                  ///< 0 to 2: of a bitmap that is asked for a number
     Rgb value{0.5};                      ///< constant
     std::shared_ptr<const Image> bitmap; ///< bitmap; shared by all textures that name the same file
     TexelFormat format;                  ///< bitmap
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
+    std::optional<TextureWrap> wrap_v; ///< along v, if it is another
     Rgb color0{0.4}, color1{0.2}; ///< checkerboard
     std::string attribute;        ///< attribute: its name, as MeshAttribute has it
-    double scale = 1;             ///< attribute
+    Rgb scale{1};                 ///< attribute, bitmap: what its values are multiplied with
+    std::string product;          ///< attribute, bitmap: a second factor, an attribute's name
+    std::string coordinates;      ///< bitmap: the attribute that is looked up in place of (u, v)
+    std::optional<double> cutoff; ///< numbers: 1 from here on, 0 below
     glm::dmat3 to_uv{1.0};
 };
 
@@ -62,16 +67,18 @@ struct Mesh {
     bool has_computed_normals = false; ///< the file states none: they are smooth_normals()
 };
 
-enum class ShapeKind { sphere, rectangle, disk, mesh };
+enum class ShapeKind { sphere, ellipsoid, cylinder, rectangle, disk, mesh };
 
 /// A shape with its place, surface and light. Geometry, normals and (u, v) are Mitsuba's: the
 /// rectangle is [-1,1]^2 in z = 0 with normal +z and uv in [0,1]^2, the disk is the unit disk in
-/// z = 0, the sphere is |x| = 1 (its reader folds `center` and `radius` into to_world). A cube is
-/// read as a mesh. World normals: rectangle, disk and vertex normals go through the inverse
-/// transpose of to_world, also if it mirrors; a mesh without vertex normals takes them from the
-/// order of its transformed vertices (mirrored, it turns inside out); those of a sphere point
-/// outwards, or inwards if to_world mirrors. Then flip_normals turns shading and geometric normals
-/// over. An area light shines, and the front of a BSDF lies, where the shading normal points.
+/// z = 0, the sphere is |x| = 1 (its reader folds `center` and `radius` into to_world; it is an
+/// ellipsoid where to_world is no similarity), the cylinder x^2 + y^2 = 1, 0 <= z <= 1, with no
+/// caps. A cube is read as a mesh. World normals: rectangle, disk and vertex normals go through the
+/// inverse transpose of to_world, also if it mirrors; a mesh without vertex normals takes them from
+/// the order of its transformed vertices (mirrored, it turns inside out); those of spheres,
+/// ellipsoids and cylinders point outwards, or inwards if to_world mirrors. Then flip_normals turns
+/// shading and geometric normals over. An area light shines, and the front of a BSDF lies, where
+/// the shading normal points.
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
     glm::dmat4 to_world{1.0};
@@ -79,7 +86,7 @@ struct Shape {
     bool flip_normals = false;
     int bsdf = none;    ///< index; the readers give a default diffuse .5 BSDF to shapes without one
     int emitter = none; ///< index of an area emitter
-    std::vector<int> attribute_textures; ///< those of kind `attribute` that it shows
+    std::vector<int> attribute_textures; ///< those that it shows with attributes of its mesh
     std::string id;
     SourceLocation where;
 };
@@ -177,8 +184,9 @@ enum class IntegratorKind { path, direct, depth };
 
 struct Integrator {
     IntegratorKind kind = IntegratorKind::path;
-    int max_depth = -1; ///< path: edges of the longest path; -1 = unbounded
-    int rr_depth = 5;   ///< path: roulette from this depth on
+    int max_depth = -1;          ///< path: edges of the longest path; -1 = unbounded
+    std::optional<int> rr_depth; ///< path: roulette from this depth on; where none is stated, as a
+                                 ///< weight window
     bool hide_emitters = false;
     bool skips_passages = false; ///< path: what lets light pass straight is no edge
     int emitter_samples = 1;     ///< direct

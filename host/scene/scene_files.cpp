@@ -94,10 +94,11 @@ std::string normal(const std::string &path) {
 
 } // namespace
 
-void SceneFiles::read_into(Image &image, const std::string &path, const SourceLocation &where,
+void SceneFiles::read_into(Image &image, const std::function<Image()> &reader,
+                           const std::string &path, const SourceLocation &where,
                            const ImageUse &use) {
     try {
-        image = read_image(path, where, use.raw);
+        image = reader();
         repair_values(image, path, where, image.is_converted && !use.is_light);
     } catch (const InputError &error) {
         if (!use.is_optional)
@@ -111,11 +112,25 @@ void SceneFiles::read_into(Image &image, const std::string &path, const SourceLo
 
 std::shared_ptr<const Image> SceneFiles::image(const std::string &path, const SourceLocation &where,
                                                const ImageUse &use) {
+    return image([=] { return read_image(path, where, use.raw); }, path, where, use);
+}
+
+std::shared_ptr<const Image> SceneFiles::image_in_memory(std::string_view bytes,
+                                                         const std::string &name,
+                                                         const SourceLocation &where,
+                                                         const ImageUse &use) {
+    return image([=] { return decode_image(bytes, name, where, use.raw); }, name, where, use);
+}
+
+std::shared_ptr<const Image> SceneFiles::image(const std::function<Image()> &reader,
+                                               const std::string &path, const SourceLocation &where,
+                                               const ImageUse &use) {
     std::shared_ptr<const Image> &known =
         images_[{normal(path), use.raw, use.is_light, use.is_optional}];
     if (!known) {
         const auto image = std::make_shared<Image>();
-        reads_.add([image, path, where, use] { read_into(*image, path, where, use); });
+        reads_.add(
+            [image, reader, path, where, use] { read_into(*image, reader, path, where, use); });
         known = image;
     }
     return known;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -28,6 +29,9 @@ public:
     /// What these return is empty until `read`. `where` is the line that names the file.
     std::shared_ptr<const Image> image(const std::string &path, const SourceLocation &where,
                                        const ImageUse &use);
+    /// An image whose encoded bytes lie in memory until `read`, under a name of their own.
+    std::shared_ptr<const Image> image_in_memory(std::string_view bytes, const std::string &name,
+                                                 const SourceLocation &where, const ImageUse &use);
     std::shared_ptr<const Mesh> mesh(MeshFormat format, const std::string &path,
                                      const MeshReadOptions &options, const SourceLocation &where);
 
@@ -43,8 +47,12 @@ public:
     void read(bool all_faults = false);
 
 private:
-    static void read_into(Image &image, const std::string &path, const SourceLocation &where,
+    static void read_into(Image &image, const std::function<Image()> &reader,
+                          const std::string &path, const SourceLocation &where,
                           const ImageUse &use);
+    std::shared_ptr<const Image> image(const std::function<Image()> &reader,
+                                       const std::string &path, const SourceLocation &where,
+                                       const ImageUse &use);
 
     FileReads reads_;
     std::set<std::string> attributes_;

@@ -54,13 +54,20 @@ Box placed_box(const ShapeInstance &instance, const Box &group);
 /// The boxes of the scene's instances, in their order.
 std::vector<Box> instance_boxes(const Scene &scene);
 
-/// How far a shape reaches along `axis`, measured from `origin`: for a sphere exactly, for others
-/// as far as their `box` does, which is shape_box().
+/// How far a shape reaches along `axis`, measured from `origin`: for spheres, ellipsoids and
+/// cylinders exactly, for others as far as their `box` does, which is shape_box().
 Range shape_range(const Shape &shape, const Box &box, const glm::dvec3 &origin,
                   const glm::dvec3 &axis);
 
 /// The same of a box.
 Range box_range(const Box &box, const glm::dvec3 &origin, const glm::dvec3 &axis);
+
+/// How much longer than 1 a matrix makes vectors of length 1 at most.
+double largest_stretch(const glm::dmat3 &matrix);
+
+/// Whether `to_world` makes an ellipsoid, cylinder or disk so thin that its float32 record would
+/// say little of it: the largest over the smallest stretch.
+bool is_nearly_singular(const glm::dmat3 &to_world);
 
 /// Radius of a sphere: the cube root of the volume that to_world gives a unit cube.
 double sphere_radius(const Shape &shape);

@@ -33,6 +33,8 @@ struct Textures {
         t.to_uv[0] = t.to_uv[4] = 1;
         t.kind = kind;
         t.wrap = wrap;
+        t.wrap_v = (wrap + static_cast<uint>(flat.textures.size())) % 3;
+        t.product = t.coordinates = CLR_NONE;
         t.nearest = nearest ? 1 : 0;
         t.width = width;
         t.height = height;
@@ -65,7 +67,7 @@ std::int64_t wrapped(double index, std::int64_t n, uint wrap) {
 }
 
 glm::dvec3 texel(const FlatScene &flat, const TextureInfo &t, double column, double row) {
-    const std::int64_t x = wrapped(column, t.width, t.wrap), y = wrapped(row, t.height, t.wrap);
+    const std::int64_t x = wrapped(column, t.width, t.wrap), y = wrapped(row, t.height, t.wrap_v);
     const auto at = static_cast<std::size_t>(t.offset + y * t.width + x);
     glm::dvec3 colour;
     for (int c = 0; c < 3; ++c)
@@ -82,16 +84,18 @@ glm::dvec3 lookup(const FlatScene &flat, const TextureInfo &t, double u, double 
         const float(&c)[3] = same ? t.color0 : t.color1;
         return {c[0], c[1], c[2]};
     }
+    const glm::dvec3 factor(t.color0[0], t.color0[1], t.color0[2]);
     double x = u * t.width, y = v * t.height;
     if (t.nearest != 0)
-        return texel(flat, t, std::floor(x), std::floor(y));
+        return factor * texel(flat, t, std::floor(x), std::floor(y));
     x -= 0.5;
     y -= 0.5;
     const double left = std::floor(x), top = std::floor(y);
-    return glm::mix(
-        glm::mix(texel(flat, t, left, top), texel(flat, t, left + 1, top), x - left),
-        glm::mix(texel(flat, t, left, top + 1), texel(flat, t, left + 1, top + 1), x - left),
-        y - top);
+    return factor *
+           glm::mix(
+               glm::mix(texel(flat, t, left, top), texel(flat, t, left + 1, top), x - left),
+               glm::mix(texel(flat, t, left, top + 1), texel(flat, t, left + 1, top + 1), x - left),
+               y - top);
 }
 
 /// Whether (u, v) lies within `slack` texels of where a texture jumps.

@@ -30,6 +30,8 @@
 #define BVH_CHILD_TRIANGLES 1u
 #define BVH_CHILD_SPHERES 2u
 #define BVH_CHILD_INSTANCE 3u
+/* A block of spheres whose index has this bit is one of quadrics (quadric.h). */
+#define BVH_QUADRICS_BIT 0x20000000u
 /* An empty child, whose box no ray meets: no other names the root. */
 #define BVH_NO_CHILD 0u
 
@@ -66,6 +68,12 @@ static inline uint bvh_child_kind(uint child) {
 }
 static inline uint bvh_child_index(uint child) {
     return child & 0x3fffffffu;
+}
+static inline int bvh_child_is_quadrics(uint child) {
+    return bvh_child_kind(child) == BVH_CHILD_SPHERES && (child & BVH_QUADRICS_BIT) != 0u;
+}
+static inline uint bvh_quadrics_index(uint child) {
+    return child & (BVH_QUADRICS_BIT - 1u);
 }
 
 CLR_PRECISION_END

@@ -40,7 +40,7 @@ typedef struct {
     clr_real env_density; /* of light sampling, per solid angle: this times the weight of the place,
                           times the sines of the row's middle over that of the place */
     int max_depth;        /* edges of the longest path; INT_MAX: unbounded */
-    int rr_depth;         /* roulette from this depth on; INT_MAX: never */
+    int rr_depth;         /* roulette at every vertex from this depth on; INT_MAX: never */
     uint width;           /* of the picture (the crop window), pixels */
     uint height;
     int crop_x; /* of the crop window within the whole film */
@@ -55,7 +55,10 @@ typedef struct {
                               looks small */
     int film_exponent;        /* the film's unit of colour is 2^film_exponent */
     uint control_group;       /* tiles of which one is a control tile; 0: there are none */
-    uint pad2[2];
+    uint prim_quadric;        /* first primitive that is a quadric */
+    uint quadric_blocks;      /* in the BVH's leaves */
+    int window_depth;         /* roulette as a weight window, from this depth on */
+    uint pad2;
     clr_real planar_rim; /* hits of planars up to these |a|, |b| or radius are not at the outline */
     clr_real lens_share; /* of the offset on the lens that is left at the start of a ray */
     clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
@@ -65,7 +68,7 @@ typedef struct {
     clr_real start_y[3];
     clr_real pad1;
 } FrameData;
-CLR_STATIC_SIZE(FrameData, CLR_EITHER(304, 544));
+CLR_STATIC_SIZE(FrameData, CLR_EITHER(312, 552));
 
 CLR_PRECISION_END
 

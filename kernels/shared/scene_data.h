@@ -12,7 +12,7 @@ CLR_PRECISION_BEGIN
 #define CLR_NONE 0xffffffffu
 
 /* Primitives are numbered through: first the spheres and then the planars that every ray tests,
-   lane-wise; then what lies in the BVH, first the triangles and then its spheres. */
+   lane-wise; then what lies in the BVH: the triangles, its spheres, and the quadrics. */
 
 /* A sphere; a negative radius turns its normal inwards. */
 typedef struct {
@@ -125,15 +125,16 @@ CLR_STATIC_WORDS(ShapeFrame, 9);
 #define CLR_LIGHT_SPOT 4u
 #define CLR_LIGHT_PROJECTOR 5u
 #define CLR_LIGHT_DIRECTIONAL 6u
-#define CLR_LIGHT_SUN 7u
+#define CLR_LIGHT_QUADRIC 7u
+#define CLR_LIGHT_SUN 8u
 
-/* One thing that light sampling can choose. `prim` is the sphere, the planar, or the entry of the
-   light triangles or of the light beams; bit k of `trail` is the child taken at level k of the
-   light tree. `position` is that of a point, spot or projector, the centre of a sphere, the middle
-   of the only light, or of a directional one the unit vector towards it. Point and spot: radiance
-   holds the intensity, times the square of the unit of length; projector: pi times the irradiance
-   at distance 1, or pi where a texture tells it, times the same; directional: the irradiance; the
-   sun: its radiance, with the rest in SkyModel. */
+/* One thing that light sampling can choose. `prim` is the sphere, the planar, the quadric, or the
+   entry of the light triangles or of the light beams; bit k of `trail` is the child taken at level
+   k of the light tree. `position` is that of a point, spot or projector, the centre of a sphere,
+   the middle of the only light, or of a directional one the unit vector towards it. Point and spot:
+   radiance holds the intensity, times the square of the unit of length; projector: pi times the
+   irradiance at distance 1, or pi where a texture tells it, times the same; directional: the
+   irradiance; the sun: its radiance, with the rest in SkyModel. */
 typedef struct {
     clr_real position[3];
     clr_word kind;
@@ -150,9 +151,9 @@ CLR_STATIC_WORDS(Light, 16);
 
 /* What a path that meets an emitter by chance needs: its radiance, and the density with which light
    sampling, once it has chosen the light, takes this point: per unit area for planars and for a
-   triangle that is the only light, 1 for spheres and for the other triangles (kind says which), 0
-   where it is never sampled. Primitive `first_prim` is light `light`, and the further triangles of
-   a mesh are the lights that follow. */
+   triangle that is the only light, 1 for spheres, quadrics and the other triangles (kind says
+   which), 0 where it is never sampled. Primitive `first_prim` is light `light`, and the further
+   triangles of a mesh are the lights that follow. */
 typedef struct {
     clr_real radiance[3];
     clr_word texture;
@@ -247,16 +248,27 @@ CLR_STATIC_WORDS(SkyModel, 48);
 
 /* A texture looked up at (m0 u + m1 v + m2, m3 u + m4 v + m5). `offset` counts pixels: packed RGBA
    bytes in the u8 array (through decode table `decode`, CLR_DECODE_*), or triples of floats. An
-   attribute of meshes is number `offset` of `width`, constant over a face where it is `nearest`,
-   and scaled by color0[0]: its triple of vertex or triangle i of shape s is number
-   attribute_places[s * width + offset] + i, modulo 2^32. */
+   attribute of meshes is number `offset` of the `attributes` that there are, constant over a face
+   where it is `nearest`: its triple of vertex or triangle i of shape s is number
+   attribute_places[s * attributes + offset] + i, modulo 2^32. A bitmap can be looked up where the
+   attribute `coordinates` says, in place of (u, v). Bitmaps and attributes are multiplied with
+   color0, and with the attribute `product` if there is one. A number is 1 from the cutoff
+   color1[0] on, else 0, where `is_cut`. */
 #define CLR_DECODE_LINEAR 0u
 #define CLR_DECODE_SRGB 1u
 #define CLR_DECODE_HALF 2u /* added: the same, rounded to half precision */
+
+/* What is asked for of a bitmap: its colour, or a number, which is its luminance or a channel. */
+#define CLR_TEXEL_COLOR 0u
+#define CLR_TEXEL_LUMINANCE 1u
+#define CLR_TEXEL_RED 2u
+#define CLR_TEXEL_GREEN 3u
+#define CLR_TEXEL_BLUE 4u
+
 typedef struct {
     clr_real to_uv[6];
     uint kind;
-    uint wrap;
+    uint wrap; /* along u */
     uint width;
     uint height;
     uint offset;
@@ -264,9 +276,13 @@ typedef struct {
     clr_real color0[3];
     uint decode;
     clr_real color1[3];
-    uint is_number; /* a bitmap's luminance is asked for */
+    uint number; /* CLR_TEXEL_* */
+    uint wrap_v; /* along v */
+    uint is_cut;
+    uint coordinates, product, attributes;
+    uint unused;
 } TextureInfo;
-CLR_STATIC_SIZE(TextureInfo, CLR_EITHER(80, 136));
+CLR_STATIC_SIZE(TextureInfo, CLR_EITHER(104, 160));
 
 CLR_PRECISION_END
 #endif

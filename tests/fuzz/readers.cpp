@@ -96,7 +96,7 @@ const std::vector<Reader> &readers() {
         {"tga", ".tga", load_picture},     {"bmp", ".bmp", load_picture},
         {"hdr", ".hdr", load_picture},     {"exr", ".exr", load_picture},
         {"pfm", ".pfm", load_picture},     {"reference", ".exr", load_reference},
-        {"polygon", ".bin", cut_polygon}};
+        {"polygon", ".bin", cut_polygon},  {"gltf", ".gltf", load_and_flatten}};
     return all;
 }
 

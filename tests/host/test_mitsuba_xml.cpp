@@ -283,7 +283,7 @@ TEST_CASE("films and filters") {
 TEST_CASE("integrators") {
     const auto integrator = [](const std::string &xml) { return load_text(xml).integrator; };
     CHECK(integrator("").max_depth == -1);
-    CHECK(integrator("").rr_depth == 5);
+    CHECK_FALSE(integrator("").rr_depth.has_value());
     const Integrator path = integrator(R"(<integrator type="path">
         <integer name="max_depth" value="7"/><integer name="rr_depth" value="9"/>
         <boolean name="hide_emitters" value="TRUE"/><integer name="samples_per_pass" value="1"/>
