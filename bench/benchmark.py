@@ -2,7 +2,8 @@
 """Run time against error: clrender and other renderers on the same scenes, taking turns in one run.
 
 Writes into build/bench/results: runs.csv and starts.csv (a row as soon as it is measured; what is
-already there is not measured again), table.md, a plot for each scene and overview.png.
+already there is not measured again), table.md, a plot for each scene and overview.png; the same
+with each renderer's own roulette into build/bench/results/roulette_own.
 docs/benchmark.md says what is measured and how. Wants an idle machine.
 """
 
@@ -15,12 +16,13 @@ import time
 
 from catalogue import TITLES
 from programs import BUILD, available_cores, use_cores
-from renderers import LABELS, Settings, find_llvm, installed
+from renderers import LABELS, OWN, Settings, find_llvm, installed
 from session import Session
 from tables import FOLDER
 
 QUICK = {"renderers": ["clrender", "mitsuba-llvm"], "spp": [16, 64], "seeds": 3, "starts": 1}
 FULL = {"renderers": list(LABELS), "spp": [4, 16, 64, 256], "seeds": 4, "starts": 2}
+NEVER = 1000000  # a depth that no path has
 QUICK_SECONDS = 255  # for the rounds; scenes, start-up and tables take the rest of five minutes
 
 
@@ -30,6 +32,11 @@ def words(text):
 
 def counts(text):
     return sorted({int(word) for word in words(text)})
+
+
+def depths(text):
+    return [OWN if word == OWN else NEVER if word == "never" else int(word)
+            for word in words(text)]
 
 
 def size(text):
@@ -75,8 +82,9 @@ def parse():
     parser.add_argument("--seeds", type=int, help="independent runs of each, at least 2 (4)")
     parser.add_argument("--starts", type=int, help="warm and cold starts of each (2)")
     parser.add_argument("--max-depth", type=int, default=10, help="longest path in segments (10)")
-    parser.add_argument("--rr-depth", type=int, default=1000000,
-                        help="depth from which roulette ends paths, for everyone (never)")
+    parser.add_argument("--rr-depth", type=depths, default=[NEVER, OWN], metavar="N,...",
+                        help="depth from which roulette ends paths, for everyone, or own, as each "
+                             "renderer does where nobody says; a table for each (never,own)")
     parser.add_argument("--mitsuba-sampler", default="multijitter", metavar="NAME",
                         choices=["multijitter", "independent", "orthogonal", "stratified"],
                         help="(multijitter), its best; independent, orthogonal, stratified")
@@ -139,20 +147,24 @@ def main():
     if arguments.fresh or (arguments.quick and not arguments.report):
         shutil.rmtree(folder, ignore_errors=True)
     scenes = prepare_scenes(arguments.only)
-    settings = Settings(*arguments.resolution, arguments.max_depth, arguments.rr_depth,
-                        arguments.cores, arguments.timeout)
     renderers = installed(arguments.renderers, arguments.mitsuba_sampler)
-    session = Session(folder, scenes, renderers, settings)
     seeds = range(1, arguments.seeds + 1)
-
-    if not arguments.report:
-        session.render(seeds, arguments.spp, started + QUICK_SECONDS if arguments.quick else None)
-        session.start_up(arguments.starts, scenes[:1] if arguments.quick else scenes)
-
-    conclude(session, seeds, arguments.spp, folder)
+    failures = False
+    for rr_depth in arguments.rr_depth[:1] if arguments.quick else arguments.rr_depth:
+        # Without roulette the results lie in the folder itself, others in one of their own.
+        results = folder if rr_depth == NEVER else folder / f"roulette_{rr_depth}"
+        settings = Settings(*arguments.resolution, arguments.max_depth, rr_depth, arguments.cores,
+                            arguments.timeout)
+        session = Session(results, scenes, renderers, settings)
+        if not arguments.report:
+            session.render(seeds, arguments.spp,
+                           started + QUICK_SECONDS if arguments.quick else None)
+            session.start_up(arguments.starts, scenes[:1] if arguments.quick else scenes)
+        conclude(session, seeds, arguments.spp, results)
+        failures = failures or bool(session.failures)
     took = time.monotonic() - started
     print(f"Written to {folder.relative_to(BUILD.parent)}, after {took:.0f} s")
-    return 1 if session.failures else 0
+    return 1 if failures else 0
 
 
 if __name__ == "__main__":

@@ -14,15 +14,22 @@ import tempfile
 from programs import CLRENDER, Failed, clrender_command, launch
 
 
+OWN = "own"
+
+
 @dataclasses.dataclass(frozen=True)
 class Settings:
-    """What is the same for all renderers of a session. timeout: seconds for one process."""
+    """What is the same for all renderers of a session. rr_depth: a number, or OWN, each renderer's
+    default. timeout: seconds for one process."""
     width: int
     height: int
     max_depth: int
-    rr_depth: int
+    rr_depth: int | str
     cores: int
     timeout: float
+
+    def rr_depth_of(self, renderer):
+        return renderer.own_rr_depth if self.rr_depth == OWN else self.rr_depth
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,6 +47,7 @@ class Run:
 class Clrender:
     name = "clrender"
     label = "clrender"
+    own_rr_depth = "auto"
 
     def version(self):
         """Which build it is, or None where there is none."""
@@ -52,7 +60,7 @@ class Clrender:
 
     def command(self, scene, prefix, spp, seed, settings):
         options = ["-r", f"{settings.width}x{settings.height}", "--max-depth", settings.max_depth,
-                   "--rr-depth", settings.rr_depth, "--seed", seed, "-s", spp]
+                   "--rr-depth", settings.rr_depth_of(self), "--seed", seed, "-s", spp]
         return clrender_command(scene, f"{prefix}_{spp}.pfm", f"{prefix}_{spp}.json", *options)
 
     def render(self, scene, prefix, spps, seed, settings):
@@ -72,11 +80,12 @@ class Clrender:
 
 
 class Peer:
-    """A renderer from a Python package, run by a module of bench/peers."""
+    """A renderer from a Python package, run by a module of bench/peers. own_rr_depth: from where
+    on its defaults end paths by roulette."""
 
-    def __init__(self, name, label, package, module):
+    def __init__(self, name, label, package, module, own_rr_depth):
         self.name, self.label, self.package = name, label, package
-        self.module, self.words = module, ()
+        self.module, self.words, self.own_rr_depth = module, (), own_rr_depth
 
     def version(self):
         try:
@@ -91,7 +100,8 @@ class Peer:
         return [sys.executable, "-m", f"peers.{self.module}", *self.words, scene, prefix, *spps,
                 "--seed", seed, "--threads", settings.cores,
                 "--width", settings.width, "--height", settings.height,
-                "--max-depth", settings.max_depth, "--rr-depth", settings.rr_depth]
+                "--max-depth", settings.max_depth,
+                "--rr-depth", settings.rr_depth_of(self)]
 
     def render(self, scene, prefix, spps, seed, settings):
         """Yields the Runs of one seed, all in one process."""
@@ -113,7 +123,7 @@ class Mitsuba(Peer):
     15 make it abort."""
 
     def __init__(self, name, label, variant, sampler="multijitter"):
-        super().__init__(name, label, "mitsuba", "mitsuba_peer")
+        super().__init__(name, label, "mitsuba", "mitsuba_peer", own_rr_depth=5)
         self.variant = variant
         self.use_sampler(sampler)
 
@@ -149,8 +159,8 @@ RENDERERS = [
     Clrender(),
     Mitsuba("mitsuba-llvm", "Mitsuba llvm", "llvm_ad_rgb"),
     Mitsuba("mitsuba-scalar", "Mitsuba scalar", "scalar_rgb"),
-    Peer("luxcore", "LuxCore", "pyluxcore", "luxcore_peer"),
-    Peer("cycles", "Cycles", "bpy", "cycles_peer"),
+    Peer("luxcore", "LuxCore", "pyluxcore", "luxcore_peer", own_rr_depth=3),
+    Peer("cycles", "Cycles", "bpy", "cycles_peer", own_rr_depth=1),
 ]
 LABELS = {renderer.name: renderer.label for renderer in RENDERERS}
 

@@ -7,6 +7,7 @@ import re
 
 import curves
 from noise import TRIMMED
+from renderers import OWN
 from summary import TARGETS
 from tables import markdown
 
@@ -89,13 +90,20 @@ def bias(summaries, seeds):
                      "z of blocks (unbiased)"], rows)
 
 
+def roulette_title(settings):
+    if settings.rr_depth == OWN:
+        return "each renderer's own roulette"
+    if settings.rr_depth > settings.max_depth:
+        return "no roulette"
+    return f"roulette from {settings.rr_depth}"
+
+
 def write_report(session, summaries, seeds, path):
     """Writes the report of a session and returns its text."""
     settings = session.settings
     spps = sorted({entry.head.spp for summary in summaries for entry in summary.entries})
     programs = ", ".join(f"{renderer.label} {renderer.version()}" for renderer in session.renderers)
-    roulette = ("no roulette" if settings.rr_depth > settings.max_depth
-                else f"roulette from {settings.rr_depth}")
+    roulette = roulette_title(settings)
     parts = [
         f"# Run time against error\n\n{datetime.date.today()}, {machine(settings.cores)}. "
         f"{programs}. {settings.width}x{settings.height}, box filter, depth {settings.max_depth}, "

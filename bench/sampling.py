@@ -27,6 +27,7 @@ VARIANTS = {
     "4 light samples": ["--light-samples", 4],
     "light sampling alone": ["--strategy", "light"],
     "BSDF sampling alone": ["--strategy", "bsdf"],
+    "no roulette": ["--rr-depth", 1000000],
     "roulette from depth 5": ["--rr-depth", 5],
 }
 
@@ -61,8 +62,8 @@ def measure(scene, arguments, folder):
     """The variants of a scene by name."""
     width, height = arguments.resolution
     rest = ["-r", f"{width}x{height}", "--max-depth", 10]
-    never = ["--rr-depth", 1000000]
-    variants = {name: Variant(scene, [*rest, *([] if "--rr-depth" in options else never), *options],
+    own = ["--rr-depth", "auto"]
+    variants = {name: Variant(scene, [*rest, *([] if "--rr-depth" in options else own), *options],
                               folder, arguments.timeout)
                 for name, options in [(OWN, []), *((n, VARIANTS[n]) for n in arguments.variants)]}
     for variant in variants.values():

@@ -1,5 +1,6 @@
 /// clrender: from a scene file to a picture. Each arrow of the way is one call here.
 
+#include "cli/checkpointing.h"
 #include "cli/compare.h"
 #include "cli/exit_codes.h"
 #include "cli/interrupt.h"
@@ -10,6 +11,8 @@
 #include "cli/test_command.h"
 #include "device/cl_context.h"
 #include "error.h"
+#include "film/checkpoint.h"
+#include "film/film_blocks.h"
 #include "log.h"
 #include "memory_limit.h"
 #include "print.h"
@@ -17,6 +20,7 @@
 #include "render/profile_trace.h"
 #include "render/render.h"
 #include "scene/film_border.h"
+#include "scene/limits.h"
 #include "scene/load_scene.h"
 #include "selftest/self_test.h"
 
@@ -25,7 +29,9 @@
 #include <exception>
 #include <fmt/core.h>
 #include <future>
+#include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -54,8 +60,11 @@ int show_devices() {
 
 /// What the command line says overrides what the scene says.
 void apply_options(const cli::Options &options, Scene &scene) {
+    // Rules of the command line take the place of the scene's number of samples.
     if (options.spp)
         scene.sample_count = *options.spp;
+    else if (options.stop.any())
+        scene.sample_count = max_sample_count;
     if (options.max_depth)
         scene.integrator.max_depth = *options.max_depth;
     if (options.weight_window)
@@ -80,14 +89,15 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.batch = options.batch;
     r.tile = options.tile;
     r.kernel_dir = options.kernel_dir;
-    r.with_variance = options.layers.count("variance") != 0;
+    r.target_error = options.stop.error.value_or(0);
+    r.with_variance = options.layers.count("variance") != 0 || options.stop.error;
     r.with_samples = options.layers.count("samples") != 0;
     r.profile = options.profile ? &profile : nullptr;
     r.band_rows = options.band_rows;
     r.preview = options.preview;
-    r.on_progress = [&](double paths) {
+    r.on_progress = [&](const RenderProgress &now) {
         cli::keep_picture();
-        progress.update(paths);
+        progress.update(now);
     };
     r.should_stop = [] { return cli::interrupted() != 0; };
     return r;
@@ -137,7 +147,54 @@ void write_pictures(const cli::Options &options, const std::string &scene,
         outputs.rescue(scene, result.image, about);
 }
 
-int render_command(const cli::Options &options) {
+/// What writing the pictures will take, from that of a part of them: its middle rows.
+double seconds_to_write(const cli::Options &options, const Image &image) {
+    constexpr int pixels = 1 << 16;
+    const Image part = middle_rows(image, std::max(pixels / image.width, 1));
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::future<void>> writes;
+    for (const std::string &path : options.outputs)
+        writes.push_back(std::async(std::launch::async,
+                                    [&, path] { try_write_image(path, part, options.exposure); }));
+    for (std::future<void> &write : writes)
+        write.get();
+    return seconds_since(start) * image.height / part.height;
+}
+
+/// Makes the render write checkpoints, and go on from `resumed`, if there is one.
+void add_checkpoints(const cli::Options &options, const Scene &scene,
+                     const std::shared_ptr<const Checkpoint> &resumed, RenderOptions &how,
+                     std::optional<cli::CheckpointWriter> &writer) {
+    const cli::CheckpointOptions &checkpoint = options.checkpoint;
+    if (sampled_border(scene.film) > 0)
+        throw InputError({options.scene, 0},
+                         "the film has a sample_border, expected none beside --checkpoint");
+    if (checkpoint.parts > 1 && whole_blocks(scene.sample_count) != scene.sample_count)
+        throw InputError({options.scene, 0},
+                         fmt::format("{} samples cannot be dealt to parts, expected 16, 32 or a "
+                                     "multiple of 64 (-s)",
+                                     scene.sample_count));
+    cli::Options run = options;
+    if (!options.stop.any())
+        run.spp = scene.sample_count;
+    const std::string described = cli::describe_run(run);
+    if (resumed)
+        cli::check_same_run(checkpoint.resumed, resumed->options, options.scene, described);
+    writer.emplace(checkpoint, described);
+    how.resumed = resumed;
+    how.part = checkpoint.part;
+    how.parts = checkpoint.parts;
+    how.checkpoint_due = [&writer] { return writer->is_due(); };
+    how.write_checkpoint = [&writer, &options, name = scene.name](const Checkpoint &sums,
+                                                                  const Image &picture) {
+        RenderStats stats;
+        stats.spp = samples_of(sums);
+        writer->write(sums, picture, metadata(options, name, stats));
+    };
+}
+
+int render_command(const cli::Options &options,
+                   const std::shared_ptr<const Checkpoint> &resumed = nullptr) {
     cli::catch_interrupts();
     Profile profile;
     const auto start = profile.origin;
@@ -148,9 +205,15 @@ int render_command(const cli::Options &options) {
     cli::RunTimes times;
     times.parse = seconds_since(start);
     profile.add_phase("parse", start, std::chrono::steady_clock::now());
-    cli::Progress progress(static_cast<double>(sampled_pixels(scene.film)) * scene.sample_count,
-                           scene.sample_count, !options.quiet && !options.check);
-    const RenderOptions how = render_options(options, progress, profile);
+    cli::Progress progress(!options.quiet && !options.check);
+    RenderOptions how = render_options(options, progress, profile);
+    if (options.stop.seconds)
+        how.deadline = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                   std::chrono::duration<double>(*options.stop.seconds));
+    how.seconds_to_write = [&](const Image &image) { return seconds_to_write(options, image); };
+    std::optional<cli::CheckpointWriter> checkpoints;
+    if (!options.checkpoint.file.empty() && !options.check)
+        add_checkpoints(options, scene, resumed, how, checkpoints);
     activity = options.check ? "checking " + options.scene : "rendering " + options.scene;
     if (options.check) {
         if (!options.stats.empty() || options.profile)
@@ -178,11 +241,16 @@ int render_command(const cli::Options &options) {
     activity = "writing the pictures";
     const auto write_start = std::chrono::steady_clock::now();
     cli::Outputs outputs;
-    write_pictures(options, name, result, outputs);
+    if (!options.outputs.empty())
+        write_pictures(options, name, result, outputs);
+    if (checkpoints)
+        outputs.attempt(options.checkpoint.file, [&] { checkpoints->check(); });
     times.write = seconds_since(write_start);
     profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
     log::info(cli::summary(result, times, outputs.written()));
+    if (options.stop.any())
+        log::info(cli::reason_line(result, times));
 
     activity = "writing what is known of the run";
     if (!options.stats.empty())
@@ -206,8 +274,7 @@ int test_command(const cli::Options &options) {
     scene.sample_count = options.spp.value_or(cli::default_test_samples);
     check_outputs(options, scene);
     const std::string name = scene.name;
-    cli::Progress progress(static_cast<double>(sampled_pixels(scene.film)) * scene.sample_count,
-                           scene.sample_count, !options.quiet);
+    cli::Progress progress(!options.quiet);
     RenderOptions how = render_options(options, progress, profile);
     how.spp = scene.sample_count;
     activity = "testing " + options.scene;
@@ -219,6 +286,17 @@ int test_command(const cli::Options &options) {
                 write_pictures(options, name, result, outputs);
         });
     return outputs.report() ? exit_code : cli::exit_output;
+}
+
+int resume_command(cli::Options options) {
+    const std::string &path = options.checkpoint.resumed;
+    activity = "reading " + path;
+    const auto checkpoint = std::make_shared<const Checkpoint>(read_checkpoint(path));
+    cli::take_run(*checkpoint, path, options);
+    if (options.spp && *options.spp < samples_of(*checkpoint))
+        throw InputError({path, 0}, fmt::format("has {} samples already, expected -s of as many",
+                                                samples_of(*checkpoint)));
+    return render_command(options, checkpoint);
 }
 
 int self_test_command(const cli::Options &options) {
@@ -247,6 +325,11 @@ int run(const cli::Options &options) {
         return test_command(options);
     case cli::Command::self_test:
         return self_test_command(options);
+    case cli::Command::resume:
+        return resume_command(options);
+    case cli::Command::merge:
+        activity = "merging";
+        return cli::merge_command(options);
     case cli::Command::render:
         break;
     }

@@ -43,10 +43,22 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
 #if FREE_PASSAGES
     p.passages = p.depth;
 #endif
+#if HIDES_BEHIND_PASSAGES
+    p.straight = p.alive;
+#endif
+#if SPECULAR_CONNECTORS > 0
+    p.scatterings = p.depth;
+    p.chain = int_of(-1);
+    p.chain_x = v3_of(0.0f, 0.0f, 0.0f);
+    p.chain_pdf = p.chain_total = real_of(0.0f);
+#endif
     p.self = source_none();
     p.o = p.d = p.throughput = p.radiance = p.prev_n = v3_of(0.0f, 0.0f, 0.0f);
     p.t_max = p.alpha = p.prev_pdf = p.eta2 = p.dx = p.dy = real_of(0.0f);
     p.weight = real_of(1.0f);
+#if ROULETTE == CLR_ROULETTE_WINDOW
+    p.window = p.weight;
+#endif
 #if FAR_CAMERA
     p.ahead = p.start_t_max = p.t_max;
     p.start = p.o;

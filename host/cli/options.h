@@ -1,6 +1,8 @@
 #pragma once
 /// The command line: what it may say, checked completely, before anything else runs.
 
+#include "cli/checkpoint_options.h"
+#include "cli/stop_options.h"
 #include "config/sampling_options.h"
 
 #include <cstdint>
@@ -12,7 +14,7 @@
 
 namespace clrender::cli {
 
-enum class Command { render, compare, test, list_devices, self_test };
+enum class Command { render, compare, test, list_devices, self_test, resume, merge };
 
 struct Resolution {
     int width = 0;
@@ -53,6 +55,8 @@ struct Options {
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
     SamplingOptions sampling;
+    StopOptions stop;
+    CheckpointOptions checkpoint;
     bool double_precision = false;           ///< --precision double
     std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together
     bool check = false;

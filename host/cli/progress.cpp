@@ -32,40 +32,49 @@ std::string format_duration(double seconds) {
     return fmt::format("{} h {:02} m", whole / 3600, whole % 3600 / 60);
 }
 
-Progress::Progress(double total_paths, int spp, bool enabled)
-    : total_paths_(std::max(total_paths, 1.0)), spp_(spp), enabled_(enabled),
-      terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
+std::string describe_progress(const RenderProgress &progress, double seconds) {
+    // A render that ends by another rule has no number to go to.
+    const double shown =
+        progress.most_samples > 0 ? std::floor(progress.samples) : std::ceil(progress.samples);
+    std::string text = std::isnan(progress.fraction)
+                           ? std::string("     ")
+                           : fmt::format("{:3.0f}%  ", std::floor(100 * progress.fraction));
+    text += fmt::format("{:.0f}", shown);
+    if (progress.most_samples > 0)
+        text += fmt::format(" of {}", progress.most_samples);
+    text += " samples";
+    if (std::isfinite(progress.error))
+        text += fmt::format("  error {:.2g}%", 100 * progress.error);
+    text += fmt::format("  {:.2f} Mpaths/s", progress.paths / seconds * 1e-6);
+    if (std::isfinite(progress.seconds_left))
+        text += "  " + format_duration(progress.seconds_left) + " left";
+    return text;
+}
 
-void Progress::update(double paths_done) {
+Progress::Progress(bool enabled)
+    : enabled_(enabled), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()),
+      last_(start_) {}
+
+void Progress::update(const RenderProgress &progress) {
     if (!enabled_)
         return;
     const Clock::time_point now = Clock::now();
     if (seconds_between(last_, now) < (terminal_ ? bar_interval : line_interval))
         return;
     last_ = now;
-    const std::string text = describe(paths_done, seconds_between(start_, now));
+    const std::string text = describe_progress(progress, seconds_between(start_, now));
 
     // A terminal's line is drawn over in place: \r goes to its start, \033[K clears what was
     // longer.
     if (terminal_) {
-        const int filled = static_cast<int>(bar_width * std::min(paths_done / total_paths_, 1.0));
+        const double fraction = std::isnan(progress.fraction) ? 0 : progress.fraction;
+        const int filled = static_cast<int>(bar_width * std::clamp(fraction, 0.0, 1.0));
         log::raw(
             fmt::format("\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", bar_width - filled, text));
         drawn_ = true;
     } else {
         log::raw(text + "\n");
     }
-}
-
-std::string Progress::describe(double paths_done, double seconds) const {
-    const double fraction = std::min(paths_done / total_paths_, 1.0);
-    const double rate = paths_done / seconds;
-    std::string text =
-        fmt::format("{:3.0f}%  {:.0f} of {} samples  {:.2f} Mpaths/s", std::floor(100 * fraction),
-                    std::floor(spp_ * fraction), spp_, rate * 1e-6);
-    if (rate > 0)
-        text += "  " + format_duration((total_paths_ - paths_done) / rate) + " left";
-    return text;
 }
 
 void Progress::finish() {

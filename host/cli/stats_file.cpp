@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace clrender::cli {
 
@@ -13,6 +14,21 @@ namespace {
 
 double per_second(double count, double seconds) {
     return seconds > 0 ? count / seconds : 0;
+}
+
+/// Why the render has ended, in a word.
+const char *ended_by(const RenderResult &result) {
+    if (result.interrupted)
+        return "interrupt";
+    switch (result.ended_by) {
+    case StopReason::time:
+        return "time";
+    case StopReason::error:
+        return "error";
+    case StopReason::samples:
+        break;
+    }
+    return "samples";
 }
 
 } // namespace
@@ -30,6 +46,7 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
         {"height", stats.height},
         {"spp", stats.spp},
         {"interrupted", result.interrupted},
+        {"ended_by", ended_by(result)},
         {"paths", stats.paths},
         {"rays", stats.rays},
         {"paths_per_second", per_second(stats.paths, stats.seconds_render)},
@@ -50,7 +67,8 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
         {"memory", {{"host_bytes", stats.host_bytes}, {"device_bytes", stats.device_bytes}}},
         {"triangles", stats.triangles},
         {"error",
-         {{"relative_variance", result.error.relative_variance},
+         {{"relative_error", result.error.relative_error()},
+          {"relative_variance", result.error.relative_variance},
           {"variance_factor", measured(result.error.factor.value)},
           {"variance_factor_error", measured(result.error.factor.error)}}},
         {"nonfinite_samples", stats.nonfinite_samples},
@@ -82,6 +100,24 @@ std::string summary(const RenderResult &result, const RunTimes &times,
                        files, s.width, s.height, samples, s.seconds_render,
                        per_second(s.paths, s.seconds_render) * 1e-6, s.device, s.lanes, times.total,
                        gaps);
+}
+
+std::string reason_line(const RenderResult &result, const RunTimes &times) {
+    std::string error;
+    if (std::isfinite(result.error.relative_error()))
+        error = fmt::format("relative error {:.2g}%, ", 100 * result.error.relative_error());
+    std::string_view reason = "all samples taken";
+    if (result.interrupted)
+        reason = "interrupted";
+    else if (result.ended_by == StopReason::time)
+        reason = "the time is up";
+    else if (result.ended_by == StopReason::error)
+        reason = "target reached";
+    std::string line = fmt::format("{}{} after {:.3g} s, {} samples a pixel", error, reason,
+                                   times.total, result.stats.spp);
+    if (!error.empty())
+        line += " (error: noise alone, the square root of the mean of variance / (value^2 + .01))";
+    return line;
 }
 
 } // namespace clrender::cli

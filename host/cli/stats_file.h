@@ -20,4 +20,7 @@ void write_stats(const std::string &path, const RenderResult &result, const RunT
 std::string summary(const RenderResult &result, const RunTimes &times,
                     const std::vector<std::string> &outputs);
 
+/// Why a render that could end by several rules has ended, as a line for the terminal.
+std::string reason_line(const RenderResult &result, const RunTimes &times);
+
 } // namespace clrender::cli

@@ -40,9 +40,7 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     config.HAS_BVH_SPHERES = flat.has_bvh_spheres() ? 1 : 0;
     config.HAS_QUADRICS = flat.quadrics.empty() ? 0 : 1;
     config.HAS_INSTANCES = flat.instances.empty() ? 0 : 1;
-    const bool has_hierarchy =
-        config.HAS_TRIANGLES != 0 || config.HAS_BVH_SPHERES != 0 || config.HAS_QUADRICS != 0;
-    config.BRUTE_FORCE = has_hierarchy && sampling.brute_force && flat.groups.empty() ? 1 : 0;
+    config.BRUTE_FORCE = flat.has_hierarchy() && sampling.brute_force && flat.groups.empty() ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
     config.HAS_UVS = flat.needs_uvs() ? 1 : 0;
     config.RECORD_TABLE = flat.lane_wise_count() <= CLR_TABLE_SIZE ? 1 : 0;
@@ -139,6 +137,9 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
         case CLR_LIGHT_DIRECTIONAL:
             config.HAS_DIRECTIONAL_LIGHTS = 1;
             break;
+        case CLR_LIGHT_SUN:
+            config.HAS_SUN = 1;
+            break;
         case CLR_LIGHT_SPHERE:
             config.HAS_SPHERE_LIGHTS = 1;
             break;
@@ -156,17 +157,29 @@ void set_lights(const FlatScene &flat, KernelConfig &config) {
     config.SHADOW_FREE_COUNT = flat.frame.shadow_free_distance > 0 ? flat.facts.large_count : 0;
     config.LIGHT_SAMPLES = flat.facts.light_samples;
     config.ENVIRONMENT = flat.facts.environment;
+    config.HAS_SKY = flat.facts.has_sky ? 1 : 0;
 }
 
-/// The window needs two vertices that scatter; a depth has to come before the end of the paths.
+/// Where lanes keep step, short paths have little to save. A depth has to come before their end.
 int roulette_of(const FlatScene &flat, bool has_free_passages) {
     const FrameData &f = flat.frame;
-    constexpr int least_window_depth = 3;
+    const int short_path = flat.has_hierarchy() ? 2 : 10;
     if (flat.facts.shows_depth)
         return CLR_ROULETTE_NONE;
-    if (flat.facts.weight_window && f.max_depth >= least_window_depth)
+    if (flat.facts.weight_window && f.max_depth > short_path)
         return CLR_ROULETTE_WINDOW;
     return f.rr_depth < f.max_depth || has_free_passages ? CLR_ROULETTE_DEPTH : CLR_ROULETTE_NONE;
+}
+
+void set_connectors(const FlatScene &flat, KernelConfig &config) {
+    const auto has_kind = [&](uint kind) {
+        return any(flat.specular_connectors,
+                   [=](const SpecularConnector &c) { return c.kind == kind; });
+    };
+    config.SPECULAR_CONNECTORS = static_cast<int>(flat.specular_connectors.size());
+    config.CONNECTS_GLASS = has_kind(CLR_CONNECT_REFRACTION);
+    config.CONNECTS_SPHERES = config.CONNECTS_GLASS | has_kind(CLR_CONNECT_REFLECTION);
+    config.CONNECTS_PLANES = has_kind(CLR_CONNECT_PLANE);
 }
 
 void set_integrator(const FlatScene &flat, const SamplingOptions &sampling, KernelConfig &config) {
@@ -229,6 +242,7 @@ KernelConfig config_of(const FlatScene &flat, const SamplingOptions &sampling,
     set_geometry(flat, sampling, config);
     set_materials(flat, config);
     set_lights(flat, config);
+    set_connectors(flat, config);
     set_integrator(flat, sampling, config);
     set_camera(flat, config);
     force_features(sampling.forced_features, config);

@@ -76,6 +76,8 @@ double largest_radiance(const Scene &scene, const Emitter &emitter, double unit)
         return texture;
     case EmitterKind::envmap:
         return largest(*emitter.bitmap) * std::abs(emitter.scale);
+    case EmitterKind::sunsky:
+        return largest_sky_radiance(emitter.sunsky) + largest(emitter.sunsky.sun_radiance);
     }
     return 0;
 }

@@ -11,6 +11,7 @@
 #include "shared/quadric.h"
 #include "shared/scene_buffers.def"
 #include "shared/scene_data.h"
+#include "shared/specular_connector.h"
 
 #include <array>
 #include <cstddef>
@@ -45,6 +46,7 @@ struct SceneFacts {
     int shadowless_count = 0; ///< the last so many planars never come before a light
     int planar_axes = 0;      ///< as PLANAR_AXES
     int environment = CLR_ENVIRONMENT_NONE;
+    bool has_sky = false;  ///< as HAS_SKY
     int light_samples = 1; ///< as LIGHT_SAMPLES
     int filter_border = 0; ///< pixels around its own that a sample reaches
     Strategy strategy = Strategy::mis;
@@ -77,6 +79,9 @@ struct FlatScene {
     /// Primitives that every ray tests.
     [[nodiscard]] std::size_t lane_wise_count() const {
         return static_cast<std::size_t>(facts.sphere_count) + planars.size();
+    }
+    [[nodiscard]] bool has_hierarchy() const {
+        return triangle_count > 0 || has_bvh_spheres() || !quadrics.empty();
     }
     [[nodiscard]] bool has_bvh_spheres() const {
         return spheres.size() > static_cast<std::size_t>(facts.sphere_count);

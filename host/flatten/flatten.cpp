@@ -46,6 +46,7 @@ FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
     flatten_shapes(work);
     flatten_lights(work);
     flatten_camera(work);
+    flatten_specular_connectors(work);
     work.flat.frame.film_exponent = film_exponent(scene, work.flat.placement);
     if (work.wants("ENVIRONMENT"))
         make_environment_map(work.flat);

@@ -92,12 +92,14 @@ CellWeights weigh_cells(const FlatScene &flat, clr_real floor) {
     return weights;
 }
 
+} // namespace
+
 /// The distributions of light sampling over the map, and its texels' weights. The mean luminance is
 /// left to BSDF sampling, which finds what is no brighter as often as it pays (Karlik et al., "MIS
 /// compensation: optimizing sampling techniques in multiple importance sampling", 2019), but where
 /// light sampling is `alone`.
 /// Returns the integral over all directions of the luminance that is sampled; 0 for a black map.
-double build_cells(FlatScene &flat, bool alone) {
+double build_map_cells(FlatScene &flat, bool alone) {
     const std::size_t width = flat.frame.env_width, rows = flat.frame.env_height - 1;
     clr_real floor = 0;
     CellWeights weights = weigh_cells(flat, floor);
@@ -135,14 +137,14 @@ double build_cells(FlatScene &flat, bool alone) {
     return weights.total;
 }
 
-} // namespace
+clr_real environment_alpha(const Integrator &integrator) {
+    return integrator.kind == IntegratorKind::path && !integrator.hide_emitters ? 1.0f : 0.0f;
+}
 
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power) {
     FlatScene &flat = work.flat;
     FrameData &f = flat.frame;
-    const Integrator &integrator = work.scene.integrator;
-    f.env_alpha =
-        integrator.kind == IntegratorKind::path && !integrator.hide_emitters ? 1.0f : 0.0f;
+    f.env_alpha = environment_alpha(work.scene.integrator);
     if (emitter.kind == EmitterKind::constant) {
         const Rgb radiance = work.scene.textures[static_cast<std::size_t>(emitter.radiance)].value;
         for (int c = 0; c < 3; ++c)
@@ -161,7 +163,7 @@ void flatten_environment(Flattening &work, const Emitter &emitter, double *power
         for (int column = 0; column < 3; ++column)
             f.env_rotation[4 * row + column] = static_cast<clr_real>(axis[column]);
     }
-    *power = build_cells(flat, flat.facts.strategy == Strategy::light);
+    *power = build_map_cells(flat, flat.facts.strategy == Strategy::light);
     // A map that is black all over adds nothing.
     flat.facts.environment = *power > 0 ? CLR_ENVIRONMENT_MAP : CLR_ENVIRONMENT_CONSTANT;
 }

@@ -9,6 +9,8 @@
 
 namespace clrender::inline CLR_PRECISION {
 
+struct LightList;
+
 /// Some of FlatScene::corners, one after the other.
 struct TriangleRange {
     std::size_t first = 0, count = 0;
@@ -36,6 +38,10 @@ struct Flattening {
     /// Whether the kernel is to be able to do it, needed or not (a name of kernel_config.def).
     [[nodiscard]] bool wants(const char *name) const {
         return is_forced(options.forced_features, name);
+    }
+    /// Whether paths have no edges, which bring nothing: not even what shines at the camera.
+    [[nodiscard]] bool is_black() const {
+        return scene.integrator.kind == IntegratorKind::path && scene.integrator.max_depth == 0;
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
     [[nodiscard]] bool needs_uvs() const { return flat.needs_uvs() || wants("HAS_UVS"); }
@@ -70,10 +76,27 @@ void flatten_instances(Flattening &work);
 /// The lights to sample, the emitters to meet.
 void flatten_lights(Flattening &work);
 
+/// The alpha of camera rays that leave the scene for an environment.
+clr_real environment_alpha(const Integrator &integrator);
+
+/// The ways of light over mirrors and through glass; asked when all else is flattened.
+void flatten_specular_connectors(Flattening &work);
+
 /// The environment: a constant one, or a map with its table, of which only the probability of its
 /// light is left to fill. `power` becomes the integral over all directions of the luminance that
 /// light sampling goes by, and is left alone without a map.
 void flatten_environment(Flattening &work, const Emitter &emitter, double *power);
+
+/// The sky of `sunsky`, by which light sampling chooses as by a map, and its sun, which is one of
+/// the lights. `power` as for flatten_environment().
+void flatten_sunsky(Flattening &work, const Emitter &emitter, LightList &list, double *power);
+
+/// The largest channel of a sky, to a few per cent.
+double largest_sky_radiance(const SunSky &sunsky);
+
+/// The distributions of light sampling over the texels of a map.
+/// Returns the integral over all directions of the luminance that is sampled; 0 for a black map.
+double build_map_cells(FlatScene &flat, bool alone);
 
 /// The map of a constant environment, or of none, that light sampling never chooses: for kernels
 /// that are forced to have one. Not where light sampling alone counts, for which a map and a

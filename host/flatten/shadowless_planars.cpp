@@ -32,6 +32,7 @@ int sole_light(const Scene &scene) {
         case EmitterKind::projector:
         case EmitterKind::directional:
         case EmitterKind::envmap:
+        case EmitterKind::sunsky:
             return none;
         case EmitterKind::area:
             if (sole != none)
@@ -45,7 +46,8 @@ int sole_light(const Scene &scene) {
 
 /// Whether the emitter's samples may come from beyond all shapes.
 bool is_outside(const Emitter &emitter) {
-    return emitter.kind == EmitterKind::envmap || emitter.kind == EmitterKind::directional;
+    return emitter.kind == EmitterKind::envmap || emitter.kind == EmitterKind::directional ||
+           emitter.kind == EmitterKind::sunsky;
 }
 
 /// The place of a light that has one and no shape.
@@ -60,6 +62,7 @@ std::optional<glm::dvec3> place_of(const Emitter &emitter) {
     case EmitterKind::constant:
     case EmitterKind::envmap:
     case EmitterKind::directional:
+    case EmitterKind::sunsky:
         break;
     }
     return std::nullopt;

@@ -60,6 +60,13 @@ void write_image(const std::string &path, const Image &image, double exposure = 
                  const std::map<std::string, std::string> &metadata = {},
                  const std::vector<ImageLayer> &extra_layers = {}, bool fast = false);
 
+/// Encodes as write_image() does and leaves no file: for the time it takes. What fails then fails
+/// when the picture is written.
+void try_write_image(const std::string &path, const Image &image, double exposure = 0);
+
+/// So many rows of a picture of floats, from its middle; all where it has no more.
+Image middle_rows(const Image &image, int rows);
+
 /// True if `write_image` knows the extension of `path`.
 bool is_writable_image_path(const std::string &path);
 

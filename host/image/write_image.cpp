@@ -183,6 +183,27 @@ void write_image(const std::string &path, const Image &image, double exposure,
     file.commit();
 }
 
+void try_write_image(const std::string &path, const Image &image, double exposure) {
+    try {
+        AtomicFile file(path);
+        encode(lower_extension(path), image, exposure, {}, {}, false, file);
+    } catch (const std::exception &) {
+        return;
+    }
+}
+
+Image middle_rows(const Image &image, int rows) {
+    Image part;
+    part.width = image.width;
+    part.height = std::min(rows, image.height);
+    part.channels = image.channels;
+    part.color_space = image.color_space;
+    const auto row = static_cast<std::ptrdiff_t>(image.width) * image.channels;
+    const auto first = image.f32.begin() + row * ((image.height - part.height) / 2);
+    part.f32.assign(first, first + row * part.height);
+    return part;
+}
+
 bool is_writable_image_path(const std::string &path) {
     constexpr std::array<std::string_view, 6> known = {".png", ".jpg", ".jpeg",
                                                        ".hdr", ".exr", ".pfm"};

@@ -32,18 +32,31 @@ public:
     /// control tiles become zero.
     void forget();
 
+    /// Keeps the sums as they are, in as much memory again, for restore(). Throws DeviceError.
+    void set_aside(const cl::Context &context);
+    /// The sums, the counters and the control tiles become what they were then.
+    void restore();
+
+    /// The sums of all rows, moments and control tiles become these; the first band is all there
+    /// is.
+    void load(const Film &film, const std::vector<ControlPixel> &control);
+
     /// Binds the buffers to arguments from `index` on; returns the index behind them.
     cl_uint bind(cl::Kernel &kernel, cl_uint index) const;
     [[nodiscard]] FilmWindow window() const;
 
     /// The sums of `count` rows of pixels, counted over the whole picture, and their moments where
     /// the variance is wanted.
-    void read_rows(std::size_t first_row, std::size_t count, Film &film) const;
+    void read_rows(std::size_t first_row, std::size_t count, Film &film) const {
+        read_rows(sums_, first_row, count, film);
+    }
+    /// The same of all rows, where `aside` as set_aside() has kept them; and the control tiles.
+    void read_all(bool aside, Film &film, std::vector<ControlPixel> &control) const;
     /// The counters of the band's tiles.
     [[nodiscard]] std::vector<ItemCounters> read_counters() const;
 
     /// Of all control tiles, in the order of control.h.
-    [[nodiscard]] std::vector<ControlPixel> read_control() const;
+    [[nodiscard]] std::vector<ControlPixel> read_control() const { return read_control(sums_); }
 
     [[nodiscard]] std::size_t bytes() const {
         return film_bytes_ + counter_bytes_ + control_bytes_;
@@ -53,7 +66,15 @@ private:
     cl::CommandQueue queue_;
     PictureTiles tiles_;
     std::size_t film_bytes_ = 0, counter_bytes_ = 0, control_bytes_ = 0;
-    cl::Buffer film_, counters_, control_;
+    struct Sums {
+        cl::Buffer film, counters, control;
+    };
+    [[nodiscard]] Sums make_sums(const cl::Context &context) const;
+    void copy(const Sums &from, const Sums &to) const;
+    void read_rows(const Sums &sums, std::size_t first_row, std::size_t count, Film &film) const;
+    [[nodiscard]] std::vector<ControlPixel> read_control(const Sums &sums) const;
+
+    Sums sums_, aside_;
     Band band_;
     std::size_t kept_end_row_ = 0; ///< end of the rows in the buffer whose sums go on
     bool unused_ = false;          ///< the first band has room and zeros already

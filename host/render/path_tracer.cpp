@@ -42,8 +42,9 @@ constexpr std::size_t largest_band = std::size_t{512} << 20;
 /// long as these are less than a thirtieth of all.
 constexpr double long_pass_seconds = 3;
 constexpr int least_spp_of_preview = 32;
-/// As soon as the speed is known.
+/// It is found out early: as soon as the speed is known, and in this share of that time.
 constexpr double probe_seconds = 0.15;
+constexpr double first_probe_share = 0.125, last_probe_share = 0.25;
 
 std::size_t round_up(std::size_t value, std::size_t unit) {
     return (value + unit - 1) / unit * unit;
@@ -195,21 +196,27 @@ void PathTracer::finish(Pending &pending, LaunchPlan &plan) {
     paths_done_ += paths;
     progress_ += paths;
     if (options_.on_progress)
-        options_.on_progress(progress_ / progress_total_);
+        options_.on_progress({.paths = progress_ / progress_total_});
     if (!has_samples_)
         log::detail("rendering: the first launch has ended");
     has_samples_ = true;
 }
 
-/// Runs the launches of a plan. Ends as `slow` where that is allowed and the first pass turns out
-/// to take long.
-PathTracer::Ended PathTracer::run(LaunchPlan &plan, bool may_be_slow) {
+/// Runs the launches of a plan. Ends as `slow` if the first pass soon turns out to take longer than
+/// that.
+PathTracer::Ended PathTracer::run(LaunchPlan &plan, double slow_seconds) {
     std::deque<Pending> pending;
     Ended ended = Ended::done;
     const auto start = std::chrono::steady_clock::now();
+    bool is_due = false;
     while (!pending.empty() || (!plan.done() && ended == Ended::done)) {
+        // The sums of a checkpoint are those of launches that have ended.
+        if (pending.empty() && is_due)
+            write_checkpoint_();
+        is_due = is_checkpoint_due_ && !plan.done() && is_checkpoint_due_();
         // The next launch waits in the queue while the one before it runs.
-        while (pending.size() < 2 && !plan.done() && ended == Ended::done) {
+        while (pending.size() < 2 && !plan.done() && ended == Ended::done &&
+               (!is_due || pending.empty())) {
             Pending next{plan.next(), {}, std::chrono::steady_clock::now()};
             enqueue(next.launch, &next.event);
             if (recorder_)
@@ -221,11 +228,11 @@ PathTracer::Ended PathTracer::run(LaunchPlan &plan, bool may_be_slow) {
         if (options_.should_stop && options_.should_stop())
             ended = Ended::stopped;
         const std::chrono::duration<double> taken = last_finish_ - start;
-        if (may_be_slow && ended == Ended::done && taken.count() > probe_seconds) {
-            may_be_slow = false;
-            if (plan.seconds_of_first_pass() > long_pass_seconds)
-                ended = Ended::slow;
-        }
+        const bool is_early =
+            taken.count() > std::min(probe_seconds, first_probe_share * slow_seconds) &&
+            taken.count() < last_probe_share * slow_seconds && plan.is_in_first_pass();
+        if (ended == Ended::done && is_early && plan.seconds_of_first_pass() > slow_seconds)
+            ended = Ended::slow;
     }
     return ended == Ended::stopped && plan.done() ? Ended::done : ended;
 }
@@ -260,7 +267,7 @@ PathTracer::Ended PathTracer::preview(int spp, Picture &picture, RenderStats &st
     for (std::size_t i = 0; i < bands_.size() && ended == Ended::done; ++i) {
         film_->begin(bands_[i]);
         LaunchPlan plan = plan_of(bands_[i], samples);
-        ended = run(plan, false);
+        ended = run(plan, no_limit);
         take(picture, bands_[i], plan);
         if (ended == Ended::stopped)
             add_counters(stats);
@@ -269,7 +276,7 @@ PathTracer::Ended PathTracer::preview(int spp, Picture &picture, RenderStats &st
     return ended;
 }
 
-PathTracer::Ended PathTracer::render_bands(int spp, bool may_be_slow, Picture &picture,
+PathTracer::Ended PathTracer::render_bands(int spp, double slow_seconds, Picture &picture,
                                            RenderStats &stats) {
     paths_done_ = 0;
     film_->forget();
@@ -277,7 +284,7 @@ PathTracer::Ended PathTracer::render_bands(int spp, bool may_be_slow, Picture &p
     for (const Band &band : bands_) {
         film_->begin(band);
         LaunchPlan plan = plan_of(band, spp);
-        const Ended ended = run(plan, may_be_slow);
+        const Ended ended = run(plan, slow_seconds);
         if (ended == Ended::slow)
             return ended;
         take(picture, band, plan);
@@ -296,7 +303,8 @@ bool PathTracer::render(int spp, Picture &picture, RenderStats &stats) {
     while (ended == Ended::slow) {
         ended = preview_first ? preview(spp, picture, stats) : Ended::done;
         if (ended == Ended::done)
-            ended = render_bands(spp, may_preview && !preview_first, picture, stats);
+            ended = render_bands(spp, may_preview && !preview_first ? long_pass_seconds : no_limit,
+                                 picture, stats);
         preview_first = true;
     }
     if (recorder_)
@@ -305,22 +313,103 @@ bool PathTracer::render(int spp, Picture &picture, RenderStats &stats) {
     return ended == Ended::stopped;
 }
 
-bool PathTracer::advance(int done, int spp, Picture &picture, RenderStats &stats) {
-    const Band &band = bands_.front();
+void PathTracer::keep_work() {
+    work_ = work();
+    last_plan_.reset();
+}
+
+/// What is in the sums; a part of a block is not, as it lies beyond those that are set aside.
+Work PathTracer::work() const {
+    Work work = work_;
+    if (last_plan_ && !is_beyond_)
+        for (const WorkPiece &piece : last_plan_->work())
+            work.push_back(piece);
+    return joined(std::move(work));
+}
+
+PathTracer::Ended PathTracer::go_on(int done, int spp, double slow_seconds) {
+    const bool is_whole = whole_blocks(spp) == spp;
+    keep_work();
     if (done == 0) {
+        work_.clear();
         film_->forget();
-        film_->begin(band);
+        film_->begin(bands_.front());
         progress_total_ = 1;
+    } else if (is_beyond_) {
+        film_->restore();
     }
-    LaunchPlan plan = plan_of(band, spp, blocks_of(done));
-    const Ended ended = run(plan, false);
+    if (!is_whole && !(is_beyond_ && done > 0))
+        film_->set_aside(context_);
+    is_beyond_ = !is_whole;
+    scene_->set_samples(queue_, spp);
+    last_plan_.emplace(plan_of(bands_.front(), spp, blocks_of(done)));
+    return run(*last_plan_, slow_seconds);
+}
+
+PathTracer::Ended PathTracer::add(Work pieces) {
+    Ended ended = Ended::done;
+    progress_total_ = 1;
+    while (!pieces.empty() && ended == Ended::done) {
+        // A plan takes a piece of each colour, of the same blocks.
+        Work together = {pieces.front()};
+        for (const WorkPiece &piece : pieces)
+            if (piece.first_block == together[0].first_block &&
+                piece.end_block == together[0].end_block && piece.colour > together.back().colour)
+                together.push_back(piece);
+        std::erase_if(pieces, [&](const WorkPiece &piece) {
+            return std::find(together.begin(), together.end(), piece) != together.end();
+        });
+        keep_work();
+        const int samples = CLR_BLOCK_START(together[0].end_block);
+        scene_->set_samples(queue_, samples);
+        last_plan_.emplace(plan_of(bands_.front(), samples, together[0].first_block));
+        last_plan_->restrict_to(together);
+        ended = run(*last_plan_, no_limit);
+    }
+    return ended;
+}
+
+FilmLayout PathTracer::layout(PixelFormat format) const {
+    return {static_cast<int>(tiles_.width),
+            static_cast<int>(tiles_.height),
+            flat_.frame.film_exponent,
+            config_.LANES,
+            format,
+            {tiles_.columns(), tiles_.rows(), config_.FILTER == CLR_FILTER_SPLATTED},
+            control_,
+            tiles_.measured};
+}
+
+void PathTracer::load(const Checkpoint &checkpoint) {
+    if (!(checkpoint.layout == layout(checkpoint.layout.format)))
+        throw DeviceError("the checkpoint's sums have another layout than this device's: expected "
+                          "a device of the kind that has begun the render");
+    film_->load(checkpoint.film, checkpoint.control);
+    work_ = checkpoint.work;
+    const int samples = samples_of(checkpoint);
+    last_plan_.emplace(plan_of(bands_.front(), samples, blocks_of(samples)));
+}
+
+Checkpoint PathTracer::checkpoint(PixelFormat format) const {
+    Checkpoint checkpoint;
+    checkpoint.layout = layout(format);
+    checkpoint.film.exponent = checkpoint.layout.exponent;
+    film_->read_all(is_beyond_, checkpoint.film, checkpoint.control);
+    checkpoint.work = work();
+    return checkpoint;
+}
+
+int PathTracer::samples_of_all() const {
+    return last_plan_ ? last_plan_->samples_of_all() : 0;
+}
+
+void PathTracer::read(Picture &picture, RenderStats &stats) {
     picture.begin_again();
-    take(picture, band, plan);
+    take(picture, bands_.front(), *last_plan_);
     // The counters go on from the first sample.
     stats.rays = stats.nonfinite_samples = 0;
     add_counters(stats);
     stats.paths = std::round(paths_done_);
-    return ended == Ended::stopped;
 }
 
 void PathTracer::add_counters(RenderStats &stats) const {

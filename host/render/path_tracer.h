@@ -6,6 +6,7 @@
 #include "device/kernel_program.h"
 #include "device_film.h"
 #include "device_scene.h"
+#include "film/checkpoint.h"
 #include "flatten/flat_scene.h"
 #include "launch_plan.h"
 #include "picture.h"
@@ -13,8 +14,11 @@
 #include "render.h"
 
 #include <chrono>
+#include <functional>
 #include <future>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace clrender::inline CLR_PRECISION {
@@ -39,6 +43,11 @@ public:
     PathTracer(const DeviceEntry &entry, FlatScene &flat, const KernelConfig &config,
                const RenderOptions &options);
 
+    /// From now on asks after each launch whether a checkpoint is due, and has it written then.
+    void on_checkpoint(std::function<bool()> is_due, std::function<void()> write) {
+        is_checkpoint_due_ = std::move(is_due);
+        write_checkpoint_ = std::move(write);
+    }
     /// Starts to compile, on a thread of its own.
     void start_compiling();
     /// Waits for the kernel.
@@ -46,10 +55,29 @@ public:
     void upload(RenderStats &stats);
     /// Renders `spp` samples a pixel into `picture`; true if it was stopped before that.
     bool render(int spp, Picture &picture, RenderStats &stats);
+    enum class Ended { done, stopped, slow };
+    static constexpr double no_limit = std::numeric_limits<double>::infinity();
     /// Goes on from `done` samples a pixel, all of which are whole blocks, to `spp` of them; only
-    /// for pictures in one band, and only with no call of render(). True if it was stopped, which
-    /// leaves tiles with different numbers of samples: it cannot go on then.
-    bool advance(int done, int spp, Picture &picture, RenderStats &stats);
+    /// for pictures in one band, and only with no call of render(). Where `spp` lies within a block
+    /// the next call begins with the same `done`: what was rendered beyond it is forgotten.
+    /// Stopped, tiles have different numbers of samples: it cannot go on then. Ends as `slow`, from
+    /// where it can go on, where the first pass turns out to take longer than `slow_seconds`.
+    Ended go_on(int done, int spp, double slow_seconds = no_limit);
+    /// What the film's sums mean; `format`: of the picture.
+    [[nodiscard]] FilmLayout layout(PixelFormat format) const;
+    /// Renders these pieces, all of whole blocks, beside what is there.
+    Ended add(Work pieces);
+    /// The sums of a checkpoint become the film's, which is empty.
+    void load(const Checkpoint &checkpoint);
+    /// The sums of all whole blocks that are there, and which they are; without `options`. Only
+    /// between launches: where on_checkpoint() calls, or no other call is under way.
+    [[nodiscard]] Checkpoint checkpoint(PixelFormat format) const;
+    /// Takes the film as the last call has left it over.
+    void read(Picture &picture, RenderStats &stats);
+    /// Samples that every pixel has.
+    [[nodiscard]] int samples_of_all() const;
+    /// Paths that have been traced.
+    [[nodiscard]] double paths() const { return paths_done_; }
     /// Whether the picture is rendered in one band.
     [[nodiscard]] bool in_one_piece() const { return bands_.size() == 1; }
     [[nodiscard]] const ControlLayout &control_layout() const { return control_; }
@@ -66,12 +94,12 @@ private:
         cl::Event event;
         std::chrono::steady_clock::time_point start;
     };
-    enum class Ended { done, stopped, slow };
-
     Ended preview(int spp, Picture &picture, RenderStats &stats);
-    Ended render_bands(int spp, bool may_be_slow, Picture &picture, RenderStats &stats);
+    Ended render_bands(int spp, double slow_seconds, Picture &picture, RenderStats &stats);
     void take(Picture &picture, const Band &band, const LaunchPlan &plan);
-    Ended run(LaunchPlan &plan, bool may_be_slow);
+    Ended run(LaunchPlan &plan, double slow_seconds);
+    void keep_work();
+    [[nodiscard]] Work work() const;
     void enqueue(const LaunchPlan::Launch &launch, cl::Event *event);
     void finish(Pending &pending, LaunchPlan &plan);
     LaunchPlan plan_of(const Band &band, int spp, int first_block = 0);
@@ -93,12 +121,17 @@ private:
     std::unique_ptr<DeviceScene> scene_;
     std::unique_ptr<DeviceFilm> film_;
     LaunchPace pace_;
+    std::function<bool()> is_checkpoint_due_;
+    std::function<void()> write_checkpoint_;
     std::unique_ptr<ProfileRecorder> recorder_; ///< where a profile is wanted
     double paths_done_ = 0;                     ///< of the picture as it stands
     double progress_ = 0, progress_total_ = 1;  ///< paths, with those that are traced again
     bool has_samples_ = false;                  ///< a launch has ended
     double seconds_read_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};
+    std::optional<LaunchPlan> last_plan_; ///< of go_on() and add()
+    Work work_;                           ///< in the film, of whole blocks, before last_plan_
+    bool is_beyond_ = false; ///< the film has samples of a part of a block, which go_on() has added
 };
 
 } // namespace clrender::inline CLR_PRECISION

@@ -8,10 +8,13 @@
 #include "memory_need.h"
 #include "path_tracer.h"
 #include "profile.h"
+#include "scene/limits.h"
+#include "stopping_rule.h"
 
 #include <chrono>
 #include <fmt/core.h>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace clrender::inline CLR_PRECISION {
@@ -36,6 +39,10 @@ private:
     Profile *profile_;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// A double-precision kernel has one lane.
 int lanes_for(const DeviceEntry &entry, const RenderOptions &options) {
@@ -105,7 +112,7 @@ public:
     /// Flattens, compiles and uploads. Frees the shapes and images of the scene on the way.
     Rendering(Scene &&scene, const RenderOptions &options);
 
-    /// Renders all samples of the options, in bands where the picture is large. Not together with
+    /// Renders as the options say, in bands where the picture is large. Not together with
     /// advance().
     void render_all();
     bool advance(int samples) override;
@@ -119,6 +126,14 @@ public:
 
 private:
     void set_frame();
+    void report_to(const RenderOptions &options);
+    void render_by_rules();
+    PathTracer::Ended begin_with_work();
+    void write_checkpoint();
+    void measure_error(StoppingRule &rule);
+    void set_finish_seconds(StoppingRule &rule);
+    void read_film() { tracer_->read(*picture_, stats_); }
+    [[nodiscard]] double now() const { return seconds_since(origin_); }
     RenderResult result_of(Picture &&picture);
 
     RenderOptions options_;
@@ -130,15 +145,22 @@ private:
     RenderStats stats_;
     std::unique_ptr<PathTracer> tracer_;
     std::unique_ptr<Picture> picture_;
+    std::optional<StoppingRule> rule_; ///< where samples alone do not end the render
+    const std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+    double render_start_ = 0; ///< by now()
+    double paths_before_ = 0; ///< of the steps before this one
     int done_ = 0;
     bool stopped_ = false;
+    bool has_picture_ = false; ///< every pixel has had a sample
+    PixelFormat format_;
 };
 
 Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     : options_(options), watch_(options.profile), entry_(choose_device_for(options)),
       spp_(options.spp > 0 ? options.spp : scene.sample_count) {
     stats_.seconds_device = watch_.lap("open the device");
-    const PixelFormat format = scene.film.pixel_format;
+    report_to(options);
+    const PixelFormat format = format_ = scene.film.pixel_format;
     flat_ = flatten(scene, options_.sampling);
     scene = {};
     config_ = configure(flat_, entry_, options_);
@@ -147,6 +169,8 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     // The kernel is compiled while the hierarchy is being built.
     tracer_ = std::make_unique<PathTracer>(entry_, flat_, config_, options_);
     tracer_->start_compiling();
+    if (options_.write_checkpoint)
+        tracer_->on_checkpoint(options_.checkpoint_due, [this] { write_checkpoint(); });
     build_hierarchy(flat_);
     stats_.host_bytes = flat_.bytes();
     stats_.seconds_build = watch_.lap("build");
@@ -176,10 +200,133 @@ void Rendering::set_frame() {
     stats_.triangles = flat_.triangle_count;
 }
 
+/// Completes what is told of the progress, and stops a render that would be late.
+void Rendering::report_to(const RenderOptions &options) {
+    if (options.on_progress)
+        options_.on_progress = [this, tell = options.on_progress](RenderProgress progress) {
+            const auto pixels = static_cast<double>(flat_.frame.width) * flat_.frame.height;
+            const double seconds = now() - render_start_;
+            progress.most_samples = spp_ < max_sample_count ? spp_ : 0;
+            if (rule_) {
+                progress.samples = rule_->whole() + (progress.paths - paths_before_) / pixels;
+                progress.seconds_left = rule_->seconds_left(now(), progress.samples);
+                progress.error = rule_->law().error_at(progress.samples);
+                progress.fraction = seconds / (seconds + progress.seconds_left);
+            } else {
+                progress.samples = progress.paths / pixels;
+                progress.fraction = std::min(progress.samples / spp_, 1.0);
+                progress.seconds_left = seconds * (1 / progress.fraction - 1);
+            }
+            tell(progress);
+        };
+    options_.should_stop = [this, stop = options.should_stop] {
+        return (stop && stop()) || (rule_ && rule_->is_overdue(now()));
+    };
+}
+
 void Rendering::render_all() {
-    stopped_ = tracer_->render(spp_, *picture_, stats_);
-    done_ = stopped_ ? 0 : spp_;
+    const bool is_timed = options_.deadline != std::chrono::steady_clock::time_point{};
+    render_start_ = now();
+    if (is_timed || options_.target_error > 0 || options_.write_checkpoint || options_.resumed) {
+        if (!in_one_piece())
+            throw DeviceError("the picture is so large that it is rendered in bands, where only a "
+                              "number of samples can end the render, without checkpoints");
+        StopLimits limits{.samples = spp_, .error = options_.target_error};
+        if (is_timed)
+            limits.deadline = std::chrono::duration<double>(options_.deadline - origin_).count();
+        rule_.emplace(limits);
+        render_by_rules();
+    } else {
+        stopped_ = tracer_->render(spp_, *picture_, stats_);
+        done_ = stopped_ ? 0 : spp_;
+    }
     stats_.seconds_render = watch_.lap("render") - tracer_->seconds_read();
+}
+
+/// The work that does not lie in steps: what a checkpoint lacks of its blocks, and a part.
+PathTracer::Ended Rendering::begin_with_work() {
+    Work done;
+    if (options_.resumed) {
+        tracer_->load(*options_.resumed);
+        done = options_.resumed->work;
+    }
+    const WorkGrid grid = tracer_->layout(format_).grid;
+    int end = 0;
+    for (const WorkPiece &piece : done)
+        end = std::max(end, piece.end_block);
+    const Work wanted = options_.parts > 1
+                            ? part_of_work(grid, blocks_of(spp_), options_.part, options_.parts)
+                            : all_work(grid, 0, end);
+    const auto ended = tracer_->add(missing_work(wanted, done));
+    paths_before_ = tracer_->paths();
+    if (ended == PathTracer::Ended::done && end > 0 && options_.parts == 1) {
+        rule_->go_on_from(CLR_BLOCK_START(end));
+        if (options_.target_error > 0)
+            measure_error(*rule_);
+    }
+    return ended;
+}
+
+/// Step by step, as the rules have it.
+void Rendering::render_by_rules() {
+    StoppingRule &rule = *rule_;
+    auto ended = begin_with_work();
+    while (ended != PathTracer::Ended::stopped && options_.parts == 1) {
+        const auto step = rule.next(now());
+        if (!step)
+            break;
+        const double start = now();
+        // What is rendered again stays in the picture until it has been.
+        if (rule.shown() > rule.whole() && !step->measure)
+            read_film();
+        ended = tracer_->go_on(rule.whole(), step->samples, step->slow_seconds);
+        if (ended == PathTracer::Ended::stopped)
+            break;
+        paths_before_ = tracer_->paths();
+        if (ended == PathTracer::Ended::slow) {
+            rule.too_slow();
+            continue;
+        }
+        rule.rendered(*step, now() - start);
+        if (step->measure)
+            measure_error(rule);
+        if (!std::exchange(has_picture_, true))
+            set_finish_seconds(rule);
+    }
+    stats_.spp = options_.parts > 1 ? spp_ : rule.shown();
+    if (ended == PathTracer::Ended::stopped) {
+        stats_.spp = std::max(rule.shown(), tracer_->samples_of_all());
+        stopped_ = !rule.is_overdue(now());
+        rule.overdue();
+    }
+    read_film();
+    done_ = rule.whole();
+    if (options_.write_checkpoint)
+        write_checkpoint();
+}
+
+void Rendering::write_checkpoint() {
+    read_film();
+    const RenderResult result = result_of(Picture(*picture_));
+    options_.write_checkpoint(tracer_->checkpoint(format_), result.image);
+}
+
+void Rendering::measure_error(StoppingRule &rule) {
+    read_film();
+    rule.measured(read().error.relative_error());
+}
+
+/// What it takes to read the film is measured at the first picture; what it takes to write it is
+/// asked for.
+void Rendering::set_finish_seconds(StoppingRule &rule) {
+    if (options_.deadline == std::chrono::steady_clock::time_point{})
+        return;
+    const double start = now();
+    read_film();
+    const RenderResult result = read();
+    const double read_seconds = now() - start;
+    rule.set_finish_seconds(
+        read_seconds + (options_.seconds_to_write ? options_.seconds_to_write(result.image) : 0));
 }
 
 bool Rendering::advance(int samples) {
@@ -188,7 +335,8 @@ bool Rendering::advance(int samples) {
         return false;
     if (end <= done_)
         return true;
-    stopped_ = tracer_->advance(done_, end, *picture_, stats_);
+    stopped_ = tracer_->go_on(done_, end) != PathTracer::Ended::done;
+    read_film();
     stats_.seconds_render += watch_.lap("render");
     if (!stopped_)
         stats_.spp = done_ = end;
@@ -202,6 +350,8 @@ RenderResult Rendering::read() {
 RenderResult Rendering::result_of(Picture &&picture) {
     RenderResult result;
     result.interrupted = stopped_;
+    if (rule_)
+        result.ended_by = rule_->reason();
     if (stopped_)
         result.gaps = picture.fill_gaps();
     stats_.clamped_pixels = picture.clamped.count;

@@ -2,10 +2,15 @@
 /// From a parsed scene to a picture.
 
 #include "config/sampling_options.h"
+#include "film/checkpoint.h"
 #include "film/control.h"
 #include "memory_need.h"
+#include "render_progress.h"
 #include "scene/scene.h"
+#include "stopping_rule.h"
 
+#include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -17,22 +22,36 @@ namespace clrender {
 struct Profile;
 
 struct RenderOptions {
-    int spp = 0; ///< samples a pixel; 0: the scene's
+    int spp = 0; ///< samples a pixel, at most; 0: the scene's
+    /// When the picture has to be written; 0: any time. It ends with as many samples in every pixel
+    /// as fit into that, one at least.
+    std::chrono::steady_clock::time_point deadline{};
+    /// Seconds that writing a picture like this one takes, for the deadline; asked once.
+    std::function<double(const Image &)> seconds_to_write;
+    /// The relative error (ErrorEstimate) that ends the render; 0: none. Needs the variance.
+    double target_error = 0;
     std::uint32_t seed = 0;
     int lanes = 0;                 ///< 1, 4, 8 or 16; 0: what suits the device
     std::string device = "auto";   ///< see choose_device()
     bool double_precision = false; ///< all in double, with one lane: slow
     SamplingOptions sampling;
-    int batch = 0;                           ///< blocks of samples in one launch; 0: chosen
-    int tile = 0;                            ///< work-items in one launch; 0: chosen
-    int band_rows = 0;                       ///< rows of tiles in one band; 0: chosen
-    bool preview = false;                    ///< a few samples of all pixels first, however fast
-    bool with_variance = false;              ///< RenderResult::variance and error are wanted
-    bool with_samples = false;               ///< RenderResult::samples is wanted
-    std::string kernel_dir;                  ///< kernel sources in place of the embedded ones
-    Profile *profile = nullptr;              ///< filled where given, with a kernel that counts
-    std::function<void(double)> on_progress; ///< paths done; called after each launch
-    std::function<bool()> should_stop;       ///< asked after each launch
+    int batch = 0;              ///< blocks of samples in one launch; 0: chosen
+    int tile = 0;               ///< work-items in one launch; 0: chosen
+    int band_rows = 0;          ///< rows of tiles in one band; 0: chosen
+    bool preview = false;       ///< a few samples of all pixels first, however fast
+    bool with_variance = false; ///< RenderResult::variance and error are wanted
+    bool with_samples = false;  ///< RenderResult::samples is wanted
+    std::string kernel_dir;     ///< kernel sources in place of the embedded ones
+    Profile *profile = nullptr; ///< filled where given, with a kernel that counts
+    std::function<void(const RenderProgress &)> on_progress; ///< called after each launch
+    std::function<bool()> should_stop;                       ///< asked after each launch
+    /// Goes on from here: the same scene and options, but for `spp` and what else ends a render.
+    std::shared_ptr<const Checkpoint> resumed;
+    int part = 1, parts = 1; ///< of the samples, which end with a block: part_of_work()
+    /// Gets the sums, without `options`, and the picture, whenever checkpoint_due() says so after a
+    /// launch, and at the end.
+    std::function<void(const Checkpoint &, const Image &)> write_checkpoint;
+    std::function<bool()> checkpoint_due;
 };
 
 /// What a run tells of itself. Seconds are wall time.
@@ -63,6 +82,9 @@ struct ErrorEstimate {
     double relative_variance = std::numeric_limits<double>::quiet_NaN();
     /// The variance over that of independent samples, as the control tiles tell.
     VarianceFactor factor;
+
+    /// The relative error of the picture, as far as it is noise.
+    [[nodiscard]] double relative_error() const { return std::sqrt(relative_variance); }
 };
 
 /// `image` has the channels of the film's pixel format; `variance`, where it is wanted, has as many
@@ -77,6 +99,7 @@ struct RenderResult {
     ErrorEstimate error; ///< where the variance is wanted
     RenderStats stats;
     bool interrupted = false;
+    StopReason ended_by = StopReason::samples; ///< unless interrupted
     std::size_t gaps = 0; ///< pixels without a sample, which show their neighbours
 };
 

@@ -62,6 +62,10 @@ extern const DroppedRule dropped_rules[];
 void upgrade_forms(pugi::xml_node object, const std::string &tag, const std::string &type,
                    XmlFile &file);
 
+/// Makes an emitter of type `sky`, `sun` or `sunsky` before version 2 what `sunsky` is today: its
+/// properties and its axes (dialect_sky.cpp).
+void upgrade_sky(pugi::xml_node emitter, const std::string &type, XmlFile &file);
+
 /// Makes <srgb>, hexadecimal colours, and spectra of three numbers an <rgb>. Throws InputError.
 void upgrade_colour(pugi::xml_node value, XmlFile &file);
 

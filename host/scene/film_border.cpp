@@ -29,9 +29,4 @@ int sampled_border(const FilmSettings &film) {
     return film.sample_border ? filter_border(film.filter) : 0;
 }
 
-std::int64_t sampled_pixels(const FilmSettings &film) {
-    const std::int64_t border = sampled_border(film);
-    return (film.crop_width + 2 * border) * (film.crop_height + 2 * border);
-}
-
 } // namespace clrender

@@ -3,8 +3,6 @@
 
 #include "scene.h"
 
-#include <cstdint>
-
 namespace clrender {
 
 /// Where the filter ends, in pixels.
@@ -15,8 +13,5 @@ int filter_border(const ReconstructionFilter &filter);
 
 /// How many pixels on each side of the crop window are sampled as well.
 int sampled_border(const FilmSettings &film);
-
-/// All pixels that are sampled.
-std::int64_t sampled_pixels(const FilmSettings &film);
 
 } // namespace clrender

@@ -13,15 +13,17 @@ namespace clrender::mitsuba {
 
 namespace {
 
-const std::vector<std::string> emitter_types{
-    "point", "area", "constant", "envmap", "spot", "directional", "projector", "directionalarea"};
+const std::vector<std::string> emitter_types{"point", "area",        "constant",  "envmap",
+                                             "spot",  "directional", "projector", "directionalarea",
+                                             "sunsky"};
 
 bool belongs_to_shape(const std::string &type) {
     return type == "area" || type == "directionalarea";
 }
 
 bool is_environment(const Emitter &emitter) {
-    return emitter.kind == EmitterKind::constant || emitter.kind == EmitterKind::envmap;
+    return emitter.kind == EmitterKind::constant || emitter.kind == EmitterKind::envmap ||
+           emitter.kind == EmitterKind::sunsky;
 }
 
 /// Weights steer the sampling of lights, not the picture, unless a light is never sampled.
@@ -61,6 +63,8 @@ void SceneReader::read_emitter(int object) {
         read_directional(properties, emitter);
     } else if (type == "projector") {
         read_projector(properties, emitter);
+    } else if (type == "sunsky") {
+        read_sunsky(properties, emitter);
     } else {
         fail_unsupported(document_, properties.object(), emitter_types);
     }
@@ -73,7 +77,7 @@ void SceneReader::read_emitter(int object) {
             if (is_environment(other))
                 throw InputError(emitter.where, properties.description() +
                                                     " is a second environment, expected one "
-                                                    "\"constant\" or \"envmap\"");
+                                                    "\"constant\", \"envmap\" or \"sunsky\"");
     scene_.emitters.push_back(std::move(emitter));
 }
 

@@ -5,6 +5,7 @@
 #include "../error.h"
 #include "../image/texels.h"
 #include "bsdf.h"
+#include "sky_model.h"
 
 #include <glm/glm.hpp>
 
@@ -105,7 +106,15 @@ struct ShapeInstance {
 
 enum class FovAxis { x, y, diagonal, smaller, larger };
 
-enum class EmitterKind { point, area, constant, envmap, spot, directional, projector };
+enum class EmitterKind { point, area, constant, envmap, spot, directional, projector, sunsky };
+
+/// What `sunsky` makes of its atmosphere; black where the sun is below the horizon.
+struct SunSky {
+    SkyDistribution sky;                     ///< scaled
+    glm::dvec3 sun_direction{0.0, 0.0, 1.0}; ///< towards it, in the world
+    double half_aperture = sun_half_angle;   ///< of the disk, radians
+    Rgb sun_radiance{0.0};                   ///< of the disk
+};
 
 /// Spots and projectors shine along +z of their own space. A spot's texture covers the square
 /// around its cone, u along +x and v along +y; a projector's picture lies as a camera's does, +y up
@@ -126,7 +135,8 @@ struct Emitter {
     std::shared_ptr<const Image> bitmap; ///< envmap: latitude-longitude, at least 2 x 3 pixels
     bool raw = false;                    ///< envmap: u8 data are linear
     double scale = 1;                    ///< envmap, projector
-    glm::dmat4 to_world{1.0};            ///< envmap, spot, projector
+    SunSky sunsky;                       ///< sunsky
+    glm::dmat4 to_world{1.0};            ///< envmap, spot, projector, sunsky; +z of a sky is up
     SourceLocation where;
 };
 

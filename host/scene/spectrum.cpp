@@ -12,8 +12,7 @@ namespace {
 constexpr double first_wavelength = 360, last_wavelength = 830;
 constexpr int table_size = 95;
 
-// The luminance of a unit spectrum, with and without the weight of the illuminant D65.
-constexpr double unit_luminance = 106.7502593994140625;
+// The luminance of a unit spectrum with the weight of the illuminant D65.
 constexpr double d65_luminance = 98.99741751876255;
 
 /// CIE 1931 colour matching functions (2 degree observer): x, y, z of each wavelength.
@@ -171,6 +170,12 @@ double value_at(const Spectrum &spectrum, double wavelength) {
 
 } // namespace
 
+Rgb spectral_colour(double wavelength) {
+    return wavelength < first_wavelength || wavelength > last_wavelength
+               ? Rgb(0)
+               : xyz_to_rgb(colour_matching(wavelength));
+}
+
 Rgb uniform_emission(double value) {
     return value * xyz_to_rgb(Rgb(1));
 }
@@ -193,7 +198,7 @@ SpectrumColour spectrum_to_rgb(const Spectrum &spectrum, SpectrumUse use) {
         const double light = use == SpectrumUse::emission ? 1 : d65_power(wavelength);
         xyz += colour_matching(wavelength) * (value_at(spectrum, wavelength) * light);
     }
-    xyz *= (last_wavelength - first_wavelength) / steps / unit_luminance;
+    xyz *= (last_wavelength - first_wavelength) / steps / unit_spectrum_luminance;
 
     // Colours that no such quantity can have in these primaries are clamped.
     const Rgb rgb = xyz_to_rgb(xyz);

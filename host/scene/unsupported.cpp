@@ -15,10 +15,9 @@ constexpr const char *mesh = "a mesh: \"ply\" or \"obj\"";
 constexpr const char *tubes = "a mesh of the tubes: \"ply\" or \"obj\"";
 constexpr const char *camera = "\"perspective\"";
 
-constexpr const char *sky = "an \"envmap\" of the sky, whose tables clrender does not have, and a "
-                            "\"directional\" for the sun";
+constexpr const char *sky = "\"sunsky\" for one moment";
 
-constexpr std::array<Unsupported, 68> table{{
+constexpr std::array<Unsupported, 65> table{{
     {"bsdf", "phong", "\"roughplastic\""},
     {"bsdf", "ward", "\"roughconductor\""},
     {"bsdf", "coating", "\"plastic\""},
@@ -46,10 +45,7 @@ constexpr std::array<Unsupported, 68> table{{
     {"shape", "heightfield", mesh},
     {"shape", "deformable", mesh},
     {"emitter", "collimated", "\"spot\" with a small cutoff_angle"},
-    {"emitter", "sunsky", sky},
     {"emitter", "timed_sunsky", sky},
-    {"emitter", "sky", sky},
-    {"emitter", "sun", sky},
     {"sensor", "batch", "the sensors inside of it in its place, of which --sensor chooses one"},
     {"sensor", "radiancemeter", camera},
     {"sensor", "irradiancemeter", camera},

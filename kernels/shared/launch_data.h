@@ -57,6 +57,8 @@ typedef struct {
     uint control_group;       /* tiles of which one is a control tile; 0: there are none */
     uint prim_quadric;        /* first primitive that is a quadric */
     uint quadric_blocks;      /* in the BVH's leaves */
+    int window_depth;         /* roulette as a weight window, from this depth on */
+    uint pad2;
     clr_real planar_rim; /* hits of planars up to these |a|, |b| or radius are not at the outline */
     clr_real lens_share; /* of the offset on the lens that is left at the start of a ray */
     clr_real skipped_depth; /* from the near clip plane to the start, where that is farther away */
@@ -66,7 +68,7 @@ typedef struct {
     clr_real start_y[3];
     clr_real pad1;
 } FrameData;
-CLR_STATIC_SIZE(FrameData, CLR_EITHER(304, 544));
+CLR_STATIC_SIZE(FrameData, CLR_EITHER(312, 552));
 
 CLR_PRECISION_END
 

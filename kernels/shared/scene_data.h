@@ -126,6 +126,7 @@ CLR_STATIC_WORDS(ShapeFrame, 9);
 #define CLR_LIGHT_PROJECTOR 5u
 #define CLR_LIGHT_DIRECTIONAL 6u
 #define CLR_LIGHT_QUADRIC 7u
+#define CLR_LIGHT_SUN 8u
 
 /* One thing that light sampling can choose. `prim` is the sphere, the planar, the quadric, or the
    entry of the light triangles or of the light beams; bit k of `trail` is the child taken at level
@@ -133,7 +134,7 @@ CLR_STATIC_WORDS(ShapeFrame, 9);
    the middle of the only light, or of a directional one the unit vector towards it. Point and spot:
    radiance holds the intensity, times the square of the unit of length; projector: pi times the
    irradiance at distance 1, or pi where a texture tells it, times the same; directional: the
-   irradiance. */
+   irradiance; the sun: its radiance, with the rest in SkyModel. */
 typedef struct {
     clr_real position[3];
     clr_word kind;
@@ -220,6 +221,21 @@ typedef struct {
     clr_real axis[2][4];
 } LightNode;
 CLR_STATIC_WORDS(LightNode, 24);
+
+/* A sky and its sun (sky.clh). `channels`: of red, green and blue the parameters A to I of Hosek
+   and Wilkie's distribution, and what it is scaled by. The sun is the disk of half angle a around
+   `to_sun`, where `cap` is 1 - cos a and `chord2` the square of the chord, above the horizon across
+   `up`; it is light `light`. Directions are the world's. */
+typedef struct {
+    clr_real channels[3][12];
+    clr_real to_sun[3];
+    clr_real cap;
+    clr_real up[3];
+    clr_real chord2;
+    clr_real sun_radiance[3];
+    clr_word light;
+} SkyModel;
+CLR_STATIC_WORDS(SkyModel, 48);
 
 #define CLR_TEXTURE_BITMAP_U8 0u
 #define CLR_TEXTURE_BITMAP_F32 1u

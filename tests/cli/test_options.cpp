@@ -170,6 +170,21 @@ TEST_CASE("Values at the edge of what is allowed") {
     CHECK_FALSE(accept({"x.xml"}).sensor.has_value());
 }
 
+TEST_CASE("Times and errors that end a render") {
+    const auto seconds = [](const char *text) {
+        return accept({"x.xml", "--time", text}).stop.seconds.value_or(-1);
+    };
+    CHECK(seconds("90") == 90);
+    CHECK(seconds("90s") == 90);
+    CHECK(seconds("1.5m") == 90);
+    CHECK(seconds("2h") == 7200);
+    CHECK(seconds("1h30m") == 5400);
+    CHECK(seconds("1h0m5s") == 3605);
+    CHECK(accept({"x.xml", "--target-error", "1%"}).stop.error == 0.01);
+    CHECK(accept({"x.xml", "--target-error", "0.02"}).stop.error == 0.02);
+    CHECK_FALSE(accept({"x.xml"}).stop.any());
+}
+
 TEST_CASE("A mistake ends with exit code 2") {
     const std::vector<std::vector<const char *>> mistakes = {
         {},
@@ -212,6 +227,19 @@ TEST_CASE("A mistake ends with exit code 2") {
         {"x.xml", "--light-samples", "3"},
         {"x.xml", "--strategy", "both"},
         {"x.xml", "--accel", "kd"},
+        {"x.xml", "--time", ""},
+        {"x.xml", "--time", "0s"},
+        {"x.xml", "--time", "-1s"},
+        {"x.xml", "--time", "5x"},
+        {"x.xml", "--time", "1m2h"},
+        {"x.xml", "--time", "1m2"},
+        {"x.xml", "--time", "1mm"},
+        {"x.xml", "--time", "nan"},
+        {"x.xml", "--target-error", "0"},
+        {"x.xml", "--target-error", "1x"},
+        {"x.xml", "--target-error", "101%"},
+        {"x.xml", "--time", "5s", "--profile"},
+        {"test", "x.xml", "--reference", "a.exr", "--time", "5s"},
         {"x.xml", "-d", ""},
         {"x.xml", "-o", ""},
         {"x.xml", "-o", "picture"},

@@ -23,28 +23,35 @@ std::string depth(const char *name, int value) {
 }
 
 /// A camera in a closed room of albedo a that emits 1 all over: every pixel has 1/(1-a).
-std::string furnace(double a) {
+std::string furnace(const std::string &room, double a) {
     return fmt::format(
         R"(<sensor type="perspective"><transform name="to_world">
             <lookat origin=".1 .2 -.3" target="0 0 1" up="0 1 0"/></transform>
             <film type="hdrfilm"><integer name="width" value="16"/>
             <integer name="height" value="16"/><rfilter type="box"/></film></sensor>
-        <shape type="sphere"><boolean name="flip_normals" value="true"/>
+        <shape type="{}"><boolean name="flip_normals" value="true"/>
             <bsdf type="diffuse"><rgb name="reflectance" value="{}"/></bsdf>
             <emitter type="area"><rgb name="radiance" value="1"/></emitter></shape>)",
-        a);
+        room, a);
 }
 
-int roulette(const std::string &integrator) {
-    return config_of(flatten(scene_from_xml(integrator + furnace(0.5))), {}).ROULETTE;
+const std::string cube = R"(<shape type="cube"/>)";
+
+int roulette(const std::string &integrator, const std::string &shape = cube) {
+    return config_of(flatten(scene_from_xml(integrator + shape)), {}).ROULETTE;
 }
 
 } // namespace
 
 TEST_CASE("roulette is a weight window where no depth is stated, and paths are long enough") {
+    const std::string sphere = R"(<shape type="sphere"/>)";
     CHECK(roulette("") == CLR_ROULETTE_WINDOW);
-    CHECK(roulette(integrator("path", depth("max_depth", 3))) == CLR_ROULETTE_WINDOW);
-    CHECK(roulette(integrator("path", depth("max_depth", 2))) == CLR_ROULETTE_NONE);
+    CHECK(roulette("", sphere) == CLR_ROULETTE_WINDOW);
+    const auto limited = [](int most) { return integrator("path", depth("max_depth", most)); };
+    CHECK(roulette(limited(3)) == CLR_ROULETTE_WINDOW);
+    CHECK(roulette(limited(2)) == CLR_ROULETTE_NONE);
+    CHECK(roulette(limited(11), sphere) == CLR_ROULETTE_WINDOW);
+    CHECK(roulette(limited(10), sphere) == CLR_ROULETTE_NONE);
     CHECK(roulette(integrator("path", depth("rr_depth", 5))) == CLR_ROULETTE_DEPTH);
     const std::string never = depth("max_depth", 8) + depth("rr_depth", 8);
     CHECK(roulette(integrator("path", never)) == CLR_ROULETTE_NONE);
@@ -53,11 +60,12 @@ TEST_CASE("roulette is a weight window where no depth is stated, and paths are l
 }
 
 TEST_CASE("furnace: a weight window leaves 1/(1-a) in a closed room of albedo a") {
-    // Dark rooms are rouletted at the second vertex; in bright ones most paths pass the depth from
-    // which all may end.
-    const double a = GENERATE(0.1, 0.5, 0.95);
-    const auto picture = render_measured(scene_from_xml(furnace(a)), {.spp = 1024});
-    INFO("albedo " << a);
+    // Rays in a cube walk a tree: dark ones are rouletted at the second vertex. In a bright sphere
+    // most paths pass the depth from which all may end.
+    const auto [room, a] = GENERATE(table<std::string, double>(
+        {{"cube", 0.1}, {"cube", 0.5}, {"sphere", 0.5}, {"sphere", 0.95}}));
+    const auto picture = render_measured(scene_from_xml(furnace(room, a)), {.spp = 1024});
+    INFO(room << ", albedo " << a);
     for (int c = 0; c < 3; ++c) {
         const double error = channel_mean(picture.mean, c) - 1 / (1 - a);
         CHECK(std::abs(error) <= 4 * picture.mean_se[static_cast<std::size_t>(c)]);

@@ -48,6 +48,21 @@ std::string cube(const Place &place) {
     return shape(R"(type="cube">)", "", place);
 }
 
+/// A cylinder with an elliptic profile between two lids, one sheared with both.
+std::string can(const Place &place) {
+    const std::string profile =
+        R"(<scale x="1.2" y=".8"/><matrix value="1 0 .5 0  0 1 .3 0  0 0 1 0  0 0 0 1"/>)";
+    std::string xml =
+        shape(R"(type="cylinder">)", R"(<translate z="-.5"/><scale z="2"/>)" + profile, place);
+    for (const char *lid : {R"(<translate z="1"/>)", R"(<translate z="-1"/>)"})
+        xml += shape(R"(type="disk">)", lid + profile, place);
+    return xml;
+}
+
+std::string egg(const Place &place) {
+    return shape(R"(type="sphere">)", R"(<scale x="1.5" y=".9" z="1.1"/>)", place);
+}
+
 /// A mesh file's shape, flat-shaded.
 std::string mesh(const std::string &text, const Place &place) {
     const auto file =
@@ -156,7 +171,7 @@ TEST_CASE("sealed boxes stay black inside under a bright sky") {
     };
     for (const Box &box :
          {Box{"rectangles", rectangles}, Box{"cube", cube}, Box{"tetrahedron", tetrahedron},
-          Box{"wedge", wedge}, Box{"closed mesh", closed_mesh}})
+          Box{"wedge", wedge}, Box{"closed mesh", closed_mesh}, Box{"can", can}, Box{"egg", egg}})
         for (const Place &place : places) {
             INFO(box.name << " of size " << place.size << ", turned by " << place.angle);
             CHECK(lit_pixels(box.make(place), place) == 0);
