@@ -1,6 +1,6 @@
 #include "gltf_material.h"
 
-#include "limits.h"
+#include "scene/limits.h"
 
 #include <fmt/format.h>
 

@@ -60,7 +60,6 @@ private:
     std::map<ShownMesh, std::vector<Primitive>> primitives_;
     std::map<ShownMesh, std::vector<SurfacedMesh>> parts_;
     bool is_lit_ = false;
-    bool has_camera_ = false;
 };
 
 /// Reads the meshes that nodes show, and notes the pictures that their materials need.

@@ -89,6 +89,22 @@ TEST_CASE("Draco's meshes of both kinds are decompressed", "[gltf]") {
     }
 }
 
+TEST_CASE("Draco data with one wrong byte are read or refused", "[gltf]") {
+    const test::ScratchFolder folder;
+    for (const auto method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
+        const std::string sound = compressed_square(method);
+        for (std::size_t at = 0; at < sound.size(); ++at)
+            for (const char change : {'\x01', '\x40', '\x7f'}) {
+                std::string data = sound;
+                data[at] = static_cast<char>(data[at] ^ change);
+                INFO("byte " << at << " changed by " << int{change});
+                const std::string path = folder.file("m.gltf", with_data(data).text());
+                const std::string fault = test::error_of([&] { (void)load_scene(path); });
+                CHECK((fault.empty() || fault.starts_with(path + ": ")));
+            }
+    }
+}
+
 TEST_CASE("broken Draco data is refused", "[gltf]") {
     const test::ScratchFolder folder;
     const std::string sound = compressed_square(draco::MESH_EDGEBREAKER_ENCODING);
