@@ -8,9 +8,42 @@
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 #include <new>
 
 namespace clrender {
+
+namespace {
+
+struct NotedFiles {
+    std::mutex mutex;
+    std::set<std::string> names;
+};
+
+NotedFiles &noted_files() {
+    static NotedFiles files;
+    return files;
+}
+
+} // namespace
+
+void note_input_file(const std::string &path) {
+    NotedFiles &noted = noted_files();
+    const std::lock_guard lock(noted.mutex);
+    noted.names.insert(path);
+}
+
+std::set<std::string> noted_input_files() {
+    NotedFiles &noted = noted_files();
+    const std::lock_guard lock(noted.mutex);
+    return noted.names;
+}
+
+void forget_input_files() {
+    NotedFiles &noted = noted_files();
+    const std::lock_guard lock(noted.mutex);
+    noted.names.clear();
+}
 
 InputFile::InputFile(const std::string &path, const SourceLocation &referrer)
     : path_(path), referrer_(referrer) {
@@ -30,6 +63,7 @@ InputFile::InputFile(const std::string &path, const SourceLocation &referrer)
                                      : "is not a regular file, expected a file");
     }
     size_ = static_cast<std::uint64_t>(status.st_size);
+    note_input_file(path);
 }
 
 InputFile::~InputFile() {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 
 namespace clrender {
@@ -36,6 +37,13 @@ private:
     int descriptor_ = -1;
     std::uint64_t size_ = 0;
 };
+
+/// Files that a scene consists of, for telling scenes apart: all InputFiles note themselves,
+/// whoever reads in another way does it.
+void note_input_file(const std::string &path);
+/// Their names, each once, since the last call of forget_input_files().
+std::set<std::string> noted_input_files();
+void forget_input_files();
 
 /// `path` in quotes, at its full length, without control characters: for messages.
 std::string quoted_path(const std::string &path);

@@ -1,5 +1,6 @@
 /// clrender: from a scene file to a picture. Each arrow of the way is one call here.
 
+#include "cli/checkpointing.h"
 #include "cli/compare.h"
 #include "cli/exit_codes.h"
 #include "cli/interrupt.h"
@@ -10,12 +11,15 @@
 #include "cli/test_command.h"
 #include "device/cl_context.h"
 #include "error.h"
+#include "film/checkpoint.h"
+#include "film/film_blocks.h"
 #include "log.h"
 #include "memory_limit.h"
 #include "print.h"
 #include "render/profile.h"
 #include "render/profile_trace.h"
 #include "render/render.h"
+#include "scene/film_border.h"
 #include "scene/limits.h"
 #include "scene/load_scene.h"
 #include "selftest/self_test.h"
@@ -25,7 +29,9 @@
 #include <exception>
 #include <fmt/core.h>
 #include <future>
+#include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -155,7 +161,40 @@ double seconds_to_write(const cli::Options &options, const Image &image) {
     return seconds_since(start) * image.height / part.height;
 }
 
-int render_command(const cli::Options &options) {
+/// Makes the render write checkpoints, and go on from `resumed`, if there is one.
+void add_checkpoints(const cli::Options &options, const Scene &scene,
+                     const std::shared_ptr<const Checkpoint> &resumed, RenderOptions &how,
+                     std::optional<cli::CheckpointWriter> &writer) {
+    const cli::CheckpointOptions &checkpoint = options.checkpoint;
+    if (sampled_border(scene.film) > 0)
+        throw InputError({options.scene, 0},
+                         "the film has a sample_border, expected none beside --checkpoint");
+    if (checkpoint.parts > 1 && whole_blocks(scene.sample_count) != scene.sample_count)
+        throw InputError({options.scene, 0},
+                         fmt::format("{} samples cannot be dealt to parts, expected 16, 32 or a "
+                                     "multiple of 64 (-s)",
+                                     scene.sample_count));
+    cli::Options run = options;
+    if (!options.stop.any())
+        run.spp = scene.sample_count;
+    const std::string described = cli::describe_run(run);
+    if (resumed)
+        cli::check_same_run(checkpoint.resumed, resumed->options, options.scene, described);
+    writer.emplace(checkpoint, described);
+    how.resumed = resumed;
+    how.part = checkpoint.part;
+    how.parts = checkpoint.parts;
+    how.checkpoint_due = [&writer] { return writer->is_due(); };
+    how.write_checkpoint = [&writer, &options, name = scene.name](const Checkpoint &sums,
+                                                                  const Image &picture) {
+        RenderStats stats;
+        stats.spp = samples_of(sums);
+        writer->write(sums, picture, metadata(options, name, stats));
+    };
+}
+
+int render_command(const cli::Options &options,
+                   const std::shared_ptr<const Checkpoint> &resumed = nullptr) {
     cli::catch_interrupts();
     Profile profile;
     const auto start = profile.origin;
@@ -172,6 +211,9 @@ int render_command(const cli::Options &options) {
         how.deadline = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                    std::chrono::duration<double>(*options.stop.seconds));
     how.seconds_to_write = [&](const Image &image) { return seconds_to_write(options, image); };
+    std::optional<cli::CheckpointWriter> checkpoints;
+    if (!options.checkpoint.file.empty() && !options.check)
+        add_checkpoints(options, scene, resumed, how, checkpoints);
     activity = options.check ? "checking " + options.scene : "rendering " + options.scene;
     if (options.check) {
         if (!options.stats.empty() || options.profile)
@@ -199,7 +241,10 @@ int render_command(const cli::Options &options) {
     activity = "writing the pictures";
     const auto write_start = std::chrono::steady_clock::now();
     cli::Outputs outputs;
-    write_pictures(options, name, result, outputs);
+    if (!options.outputs.empty())
+        write_pictures(options, name, result, outputs);
+    if (checkpoints)
+        outputs.attempt(options.checkpoint.file, [&] { checkpoints->check(); });
     times.write = seconds_since(write_start);
     profile.add_phase("write", write_start, std::chrono::steady_clock::now());
     times.total = seconds_since(start);
@@ -243,6 +288,17 @@ int test_command(const cli::Options &options) {
     return outputs.report() ? exit_code : cli::exit_output;
 }
 
+int resume_command(cli::Options options) {
+    const std::string &path = options.checkpoint.resumed;
+    activity = "reading " + path;
+    const auto checkpoint = std::make_shared<const Checkpoint>(read_checkpoint(path));
+    cli::take_run(*checkpoint, path, options);
+    if (options.spp && *options.spp < samples_of(*checkpoint))
+        throw InputError({path, 0}, fmt::format("has {} samples already, expected -s of as many",
+                                                samples_of(*checkpoint)));
+    return render_command(options, checkpoint);
+}
+
 int self_test_command(const cli::Options &options) {
     activity = "testing the device";
     RenderOptions how;
@@ -269,6 +325,11 @@ int run(const cli::Options &options) {
         return test_command(options);
     case cli::Command::self_test:
         return self_test_command(options);
+    case cli::Command::resume:
+        return resume_command(options);
+    case cli::Command::merge:
+        activity = "merging";
+        return cli::merge_command(options);
     case cli::Command::render:
         break;
     }

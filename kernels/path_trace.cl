@@ -43,6 +43,9 @@ CLR_INLINE void render_block(const SceneData *scene, Work work, BlockSums *block
 #if FREE_PASSAGES
     p.passages = p.depth;
 #endif
+#if HIDES_BEHIND_PASSAGES
+    p.straight = p.alive;
+#endif
 #if SPECULAR_CONNECTORS > 0
     p.scatterings = p.depth;
     p.chain = int_of(-1);

@@ -246,7 +246,7 @@ struct RawOptions {
 };
 
 void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
-    app.add_option("SCENE", options.scene, "Mitsuba 3 scene (.xml) or a model (.obj, .ply)")
+    app.add_option("SCENE", options.scene, "Mitsuba 3 scene (.xml) or a model (.gltf, .glb, .obj, .ply)")
         ->type_name("");
     app.add_option("-o,--output", options.outputs,
                    "Picture to write, repeatable: .png .jpg .hdr .exr .pfm\n"
@@ -503,8 +503,15 @@ void finish_options(Options &options, const RawOptions &raw) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);
     }
-    if (options.outputs.empty() && options.command == Command::render) {
-        const std::string stem = fs::path(options.scene).stem().string();
+    const std::string stem = fs::path(options.scene).stem().string();
+    CheckpointOptions &checkpoint = options.checkpoint;
+    if (options.command == Command::resume && checkpoint.file.empty())
+        checkpoint.file = checkpoint.resumed;
+    if (checkpoint.parts > 1) {
+        if (checkpoint.file.empty())
+            checkpoint.file =
+                fmt::format("{}.part{}of{}.exr", stem, checkpoint.part, checkpoint.parts);
+    } else if (options.outputs.empty() && options.command == Command::render) {
         options.outputs = {stem + ".png", stem + ".exr"};
     }
 }
@@ -526,6 +533,22 @@ void check_combination(const Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.spp && *options.spp < least_test_samples)
         refuse(fmt::format("test takes at least {} samples, -s allows {}", least_test_samples,
                            *options.spp));
+    const CheckpointOptions &checkpoint = options.checkpoint;
+    const bool has_checkpoint = !checkpoint.file.empty() || checkpoint.parts > 1;
+    if (options.command == Command::resume || options.command == Command::merge) {
+        if (!options.scene.empty())
+            refuse("resume and merge know their scene, expected no SCENE");
+        if (checkpoint.parts > 1 || options.check)
+            refuse("resume and merge exclude --part and --check");
+    }
+    if (options.command == Command::merge && options.outputs.empty())
+        refuse("merge needs -o, the picture to write");
+    if (options.command == Command::test && has_checkpoint)
+        refuse("test excludes --checkpoint and --part");
+    if (has_checkpoint && !raw.profile.empty())
+        refuse("--profile excludes --checkpoint and --part: it shows every sample once");
+    if (checkpoint.parts > 1 && options.stop.any())
+        refuse("--part takes a number of samples, it excludes --time and --target-error");
     if (options.command == Command::test && options.stop.any())
         refuse("test decides itself when it is done, it excludes --time and --target-error");
     if (options.stop.any() && !raw.profile.empty())
@@ -562,9 +585,12 @@ ParseResult parse_options(int argc, const char *const *argv) {
     add_picture_options(app, options, raw);
     add_sampling_options(app, options, raw);
     add_stop_options(app, options.stop);
+    add_checkpoint_options(app, options.checkpoint);
     add_run_options(app, options, raw);
     const CLI::App *compare = add_compare(app, options.compare);
     const CLI::App *test = add_test(app, options, raw);
+    const CLI::App *resume = add_resume(app, options.checkpoint);
+    const CLI::App *merge = add_merge(app, options.checkpoint);
 
     try {
         app.parse(reversed_arguments(argc, argv));
@@ -572,6 +598,8 @@ ParseResult parse_options(int argc, const char *const *argv) {
                           : raw.self_test     ? Command::self_test
                           : compare->parsed() ? Command::compare
                           : test->parsed()    ? Command::test
+                          : resume->parsed()  ? Command::resume
+                          : merge->parsed()   ? Command::merge
                                               : Command::render;
         check_combination(options, raw);
     } catch (const CLI::Success &help_or_version) {

@@ -1,6 +1,7 @@
 #pragma once
 /// The command line: what it may say, checked completely, before anything else runs.
 
+#include "cli/checkpoint_options.h"
 #include "cli/stop_options.h"
 #include "config/sampling_options.h"
 
@@ -13,7 +14,7 @@
 
 namespace clrender::cli {
 
-enum class Command { render, compare, test, list_devices, self_test };
+enum class Command { render, compare, test, list_devices, self_test, resume, merge };
 
 struct Resolution {
     int width = 0;
@@ -55,6 +56,7 @@ struct Options {
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
     SamplingOptions sampling;
     StopOptions stop;
+    CheckpointOptions checkpoint;
     bool double_precision = false;           ///< --precision double
     std::optional<std::uint64_t> max_memory; ///< bytes, on the host and the device together
     bool check = false;

@@ -1,6 +1,7 @@
 /// Lights without a surface: points, spots, projectors, directional ones.
 
 #include "light_list.h"
+#include "scene/similarity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,18 +25,6 @@ const Texture *texture_of(const Flattening &work, const Emitter &emitter) {
 /// Row `i` of a matrix.
 glm::dvec3 row_of(const glm::dmat3 &m, int i) {
     return {m[0][i], m[1][i], m[2][i]};
-}
-
-/// Whether a matrix keeps angles.
-bool keeps_angles(const glm::dmat3 &m) {
-    const glm::dmat3 square = glm::transpose(m) * m;
-    constexpr double tolerance = 1e-6;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-            if (std::abs(square[column][row] - (row == column ? square[0][0] : 0)) >
-                tolerance * square[0][0])
-                return false;
-    return true;
 }
 
 /// What all lights at one place have.
@@ -98,7 +87,7 @@ void add_spot(Flattening &work, const Emitter &emitter, LightList &list) {
     beam.ramp = static_cast<clr_real>(
         1 / std::max((emitter.cutoff_angle - emitter.beam_width) / 360, narrowest_ramp));
     work.flat.light_beams.push_back(beam);
-    if (emitter.cutoff_angle < 90 && keeps_angles(glm::dmat3(emitter.to_world))) {
+    if (emitter.cutoff_angle < 90 && is_similarity(glm::dmat3(emitter.to_world), 1e-6)) {
         extent.cosine = std::cos(cutoff);
         extent.is_beam = true;
     }

@@ -1,5 +1,6 @@
 #include "film_filter.h"
 #include "flatten_parts.h"
+#include "log.h"
 #include "scene/limits.h"
 #include "shared/film_filter.h"
 
@@ -25,8 +26,9 @@ void flatten_film(Flattening &work) {
     f.crop_x = film.crop_x - flat.border;
     f.crop_y = film.crop_y - flat.border;
     const PixelFormat format = film.pixel_format;
-    flat.facts.has_alpha = format == PixelFormat::luminance_alpha || format == PixelFormat::rgba ||
-                           format == PixelFormat::xyza;
+    flat.facts.has_alpha = (format == PixelFormat::luminance_alpha || format == PixelFormat::rgba ||
+                            format == PixelFormat::xyza) &&
+                           !work.is_black();
     f.filter_radius = static_cast<clr_real>(filter_radius(film.filter));
     if (work.options.pixel_centers || film.filter.kind == FilterKind::box)
         return;
@@ -38,6 +40,8 @@ void flatten_integrator(Flattening &work) {
     FlatScene &flat = work.flat;
     const Integrator &integrator = work.scene.integrator;
     FrameData &f = flat.frame;
+    if (work.is_black())
+        log::warn("max_depth 0 leaves no light: the picture is black");
     f.max_depth = integrator.max_depth < 0 ? INT_MAX : integrator.max_depth;
     f.rr_depth = integrator.rr_depth.value_or(window_end_depth);
     flat.facts.weight_window = !integrator.rr_depth && integrator.kind == IntegratorKind::path;

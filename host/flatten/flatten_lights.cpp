@@ -336,10 +336,10 @@ double mean_luminance(const Texture &texture) {
 
 void flatten_lights(Flattening &work) {
     FlatScene &flat = work.flat;
-    flat.emitters.resize(work.scene.emitters.size());
+    flat.emitters.resize(work.is_black() ? 0 : work.scene.emitters.size());
     LightList list;
     double map_power = 0;
-    for (std::size_t i = 0; i < work.scene.emitters.size(); ++i) {
+    for (std::size_t i = 0; i < flat.emitters.size(); ++i) {
         const Emitter &emitter = work.scene.emitters[i];
         switch (emitter.kind) {
         case EmitterKind::point:

@@ -39,6 +39,10 @@ struct Flattening {
     [[nodiscard]] bool wants(const char *name) const {
         return is_forced(options.forced_features, name);
     }
+    /// Whether paths have no edges, which bring nothing: not even what shines at the camera.
+    [[nodiscard]] bool is_black() const {
+        return scene.integrator.kind == IntegratorKind::path && scene.integrator.max_depth == 0;
+    }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
     [[nodiscard]] bool needs_uvs() const { return flat.needs_uvs() || wants("HAS_UVS"); }
 };

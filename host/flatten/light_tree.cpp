@@ -116,7 +116,9 @@ private:
 
         [[nodiscard]] std::size_t bin_of(const glm::dvec3 &place) const {
             const double at = (place[axis] - lower) * bins_a_length;
-            return std::min(static_cast<std::size_t>(at), bins - 1);
+            if (!(at > 0)) // NaN, too: of lights so far away that float32 has no number for it
+                return 0;
+            return at < bins ? static_cast<std::size_t>(at) : bins - 1;
         }
     };
 

@@ -45,8 +45,9 @@ bool is_inverted(const Shape &shape) {
 
 uint append_shape(const Shape &shape, Flattening &work) {
     FlatScene &flat = work.flat;
-    flat.shapes.push_back({work.sides_of_bsdf.at(shape.bsdf),
-                           shape.emitter == none ? CLR_NONE : static_cast<uint>(shape.emitter)});
+    flat.shapes.push_back(
+        {work.sides_of_bsdf.at(shape.bsdf),
+         shape.emitter == none || work.is_black() ? CLR_NONE : static_cast<uint>(shape.emitter)});
     flat.attribute_places.resize(flat.shapes.size() * work.attribute_index.size());
     if (work.needs_uvs()) {
         glm::dmat3 to_local{1.0};

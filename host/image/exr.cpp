@@ -1,6 +1,6 @@
 #include "color.h"
 #include "exr_channels.h"
-#include "formats.h"
+#include "exr_io.h"
 
 #include <ImfChannelList.h>
 #include <ImfCompression.h>
@@ -23,26 +23,6 @@
 namespace clrender::image_format {
 
 namespace {
-
-class MemoryInput : public Imf::IStream {
-public:
-    explicit MemoryInput(std::string_view bytes) : IStream("image"), bytes_(bytes) {}
-
-    bool read(char *target, int count) override {
-        const auto wanted = static_cast<std::uint64_t>(count);
-        if (count < 0 || offset_ > bytes_.size() || wanted > bytes_.size() - offset_)
-            throw FormatError("the file ends before its last pixel (truncated)");
-        std::memcpy(target, bytes_.data() + offset_, wanted);
-        offset_ += wanted;
-        return offset_ < bytes_.size();
-    }
-    std::uint64_t tellg() override { return offset_; }
-    void seekg(std::uint64_t offset) override { offset_ = offset; }
-
-private:
-    std::string_view bytes_;
-    std::uint64_t offset_ = 0;
-};
 
 class FileOutput : public Imf::OStream {
 public:
@@ -224,6 +204,12 @@ std::optional<Image> decode_exr_layer(std::string_view bytes, const std::string 
 
 void encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
                 const std::vector<ImageLayer> &extra_layers, bool fast, AtomicFile &file) {
+    encode_exr(image, metadata, extra_layers, fast, file, {});
+}
+
+void encode_exr(const Image &image, const std::map<std::string, std::string> &metadata,
+                const std::vector<ImageLayer> &extra_layers, bool fast, AtomicFile &file,
+                const AddToExr &add_more) {
     // One flat list of planes: the main layer, then the others with their prefix.
     std::vector<ImageLayer> layers = {{"", &image}};
     layers.insert(layers.end(), extra_layers.begin(), extra_layers.end());
@@ -245,6 +231,8 @@ void encode_exr(const Image &image, const std::map<std::string, std::string> &me
                                           layer.image->channels, static_cast<int>(c)));
         }
     }
+    if (add_more)
+        add_more(header, buffer);
 
     const int threads = tbb::this_task_arena::max_concurrency();
     if (Imf::globalThreadCount() < threads)

@@ -102,14 +102,43 @@ FilmWindow DeviceFilm::window() const {
             static_cast<cl_uint>(band_.tiles.first_row * band_.tiles.columns)};
 }
 
-void DeviceFilm::read_rows(std::size_t first_row, std::size_t count, Film &film) const {
+void DeviceFilm::load(const Film &film, const std::vector<ControlPixel> &control) {
+    forget();
+    unused_ = false;
+    with_device("loading the film", [&] {
+        const auto write = [&](const cl::Buffer &to, const auto &values) {
+            if (!values.empty())
+                queue_.enqueueWriteBuffer(to, CL_TRUE, 0, values.size() * sizeof(values[0]),
+                                          values.data());
+        };
+        if (tiles_.measured) {
+            std::vector<MeasuredPixel> measured(film.pixels.size());
+            for (std::size_t i = 0; i < measured.size(); ++i)
+                measured[i] = {film.pixels[i], film.moments[i]};
+            write(sums_.film, measured);
+        } else {
+            write(sums_.film, film.pixels);
+        }
+        write(sums_.control, control);
+    });
+    kept_end_row_ = band_.end_row;
+}
+
+void DeviceFilm::read_all(bool aside, Film &film, std::vector<ControlPixel> &control) const {
+    const Sums &sums = aside ? aside_ : sums_;
+    read_rows(sums, band_.first_row, band_.end_row - band_.first_row, film);
+    control = read_control(sums);
+}
+
+void DeviceFilm::read_rows(const Sums &sums, std::size_t first_row, std::size_t count,
+                           Film &film) const {
     const std::size_t pixels = count * tiles_.width;
     film.width = static_cast<int>(tiles_.width);
     film.height = static_cast<int>(count);
     film.pixels.resize(pixels);
     const auto read = [&](void *to) {
         with_device("reading the film", [&] {
-            queue_.enqueueReadBuffer(sums_.film, CL_TRUE,
+            queue_.enqueueReadBuffer(sums.film, CL_TRUE,
                                      (first_row - band_.first_row) * tiles_.row_bytes(),
                                      count * tiles_.row_bytes(), to);
         });
@@ -136,11 +165,11 @@ std::vector<ItemCounters> DeviceFilm::read_counters() const {
     return counters;
 }
 
-std::vector<ControlPixel> DeviceFilm::read_control() const {
+std::vector<ControlPixel> DeviceFilm::read_control(const Sums &sums) const {
     std::vector<ControlPixel> pixels(control_bytes_ / sizeof(ControlPixel));
     if (!pixels.empty())
         with_device("reading the control tiles", [&] {
-            queue_.enqueueReadBuffer(sums_.control, CL_TRUE, 0, control_bytes_, pixels.data());
+            queue_.enqueueReadBuffer(sums.control, CL_TRUE, 0, control_bytes_, pixels.data());
         });
     return pixels;
 }

@@ -37,18 +37,26 @@ public:
     /// The sums, the counters and the control tiles become what they were then.
     void restore();
 
+    /// The sums of all rows, moments and control tiles become these; the first band is all there
+    /// is.
+    void load(const Film &film, const std::vector<ControlPixel> &control);
+
     /// Binds the buffers to arguments from `index` on; returns the index behind them.
     cl_uint bind(cl::Kernel &kernel, cl_uint index) const;
     [[nodiscard]] FilmWindow window() const;
 
     /// The sums of `count` rows of pixels, counted over the whole picture, and their moments where
     /// the variance is wanted.
-    void read_rows(std::size_t first_row, std::size_t count, Film &film) const;
+    void read_rows(std::size_t first_row, std::size_t count, Film &film) const {
+        read_rows(sums_, first_row, count, film);
+    }
+    /// The same of all rows, where `aside` as set_aside() has kept them; and the control tiles.
+    void read_all(bool aside, Film &film, std::vector<ControlPixel> &control) const;
     /// The counters of the band's tiles.
     [[nodiscard]] std::vector<ItemCounters> read_counters() const;
 
     /// Of all control tiles, in the order of control.h.
-    [[nodiscard]] std::vector<ControlPixel> read_control() const;
+    [[nodiscard]] std::vector<ControlPixel> read_control() const { return read_control(sums_); }
 
     [[nodiscard]] std::size_t bytes() const {
         return film_bytes_ + counter_bytes_ + control_bytes_;
@@ -63,6 +71,8 @@ private:
     };
     [[nodiscard]] Sums make_sums(const cl::Context &context) const;
     void copy(const Sums &from, const Sums &to) const;
+    void read_rows(const Sums &sums, std::size_t first_row, std::size_t count, Film &film) const;
+    [[nodiscard]] std::vector<ControlPixel> read_control(const Sums &sums) const;
 
     Sums sums_, aside_;
     Band band_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace clrender {
 
@@ -55,7 +56,7 @@ LaunchPlan::LaunchPlan(const TileRows &rows, int spp, bool by_colour, LaunchPace
                        std::size_t tile_items, int batch, int first_block)
     : spp_(spp), blocks_(blocks_of(spp)), by_colour_(by_colour), pace_(pace),
       tile_items_(tile_items), batch_(batch), pass_(pace.begin_pass()), first_block_(first_block),
-      finished_block_(first_block) {
+      start_block_(first_block), finished_block_(first_block) {
     if (by_colour) {
         for (unsigned number = 0; number < CLR_TILE_COLOURS; ++number) {
             const std::size_t columns = (rows.columns + 1 - (number & 1)) / 2;
@@ -72,6 +73,35 @@ LaunchPlan::LaunchPlan(const TileRows &rows, int spp, bool by_colour, LaunchPace
         colour.finished = first_block_ == 0 ? colour.first_item : colour.end_item;
     next_item_ = colours_[0].first_item;
     end_block_ = first_block_ == 0 ? std::min(1, blocks_) : end_of_pass();
+}
+
+void LaunchPlan::restrict_to(const Work &pieces) {
+    std::vector<Colour> colours;
+    for (Colour &colour : colours_)
+        for (const WorkPiece &piece : pieces)
+            if (piece.colour == colour.number) {
+                colour.first_item = piece.first_item;
+                colour.end_item = piece.end_item;
+                colour.finished = first_block_ == 0 ? colour.first_item : colour.end_item;
+                colours.push_back(colour);
+            }
+    colours_ = std::move(colours);
+    next_item_ = colours_[0].first_item;
+}
+
+Work LaunchPlan::work() const {
+    Work work;
+    for (std::size_t i = 0; i < colours_.size(); ++i) {
+        const Colour &colour = colours_[i];
+        if (first_block_ > start_block_)
+            work.push_back(
+                {start_block_, first_block_, colour.number, colour.first_item, colour.end_item});
+        const std::size_t end =
+            i < colour_ ? colour.end_item : (i == colour_ ? next_item_ : colour.first_item);
+        if (end > colour.first_item)
+            work.push_back({first_block_, end_block_, colour.number, colour.first_item, end});
+    }
+    return work;
 }
 
 int LaunchPlan::samples(int first_block, int end_block) const {

@@ -1,6 +1,8 @@
 #pragma once
 /// How a render is cut into launches.
 
+#include "film/work_done.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -93,6 +95,9 @@ public:
     /// measured speed decide.
     LaunchPlan(const TileRows &rows, int spp, bool by_colour, LaunchPace &pace,
                std::size_t tile_items = 0, int batch = 0, int first_block = 0);
+    /// From now on only these pieces are rendered, all of the blocks of the plan, one of a colour
+    /// at most; before the first launch.
+    void restrict_to(const Work &pieces);
 
     [[nodiscard]] bool done() const { return first_block_ >= blocks_; }
     /// The next launch; only while not done.
@@ -110,6 +115,8 @@ public:
     [[nodiscard]] double seconds_of_first_pass() const;
     /// Samples that every pixel of all tiles has, by the launches that have ended.
     [[nodiscard]] int samples_of_all() const;
+    /// The work of the launches that were handed out.
+    [[nodiscard]] Work work() const;
     /// Whether the pixels of a tile, numbered over the whole picture, have samples.
     [[nodiscard]] bool has_samples(std::size_t column, std::size_t row) const;
 
@@ -139,6 +146,7 @@ private:
     std::size_t colour_ = 0; ///< index into colours_
     std::size_t next_item_ = 0;
     int first_block_ = 0, end_block_ = 0; ///< of the current pass
+    int start_block_ = 0;                 ///< of the plan
     int finished_block_ = 0;              ///< end of the last pass that has ended
 };
 

@@ -208,9 +208,15 @@ PathTracer::Ended PathTracer::run(LaunchPlan &plan, double slow_seconds) {
     std::deque<Pending> pending;
     Ended ended = Ended::done;
     const auto start = std::chrono::steady_clock::now();
+    bool is_due = false;
     while (!pending.empty() || (!plan.done() && ended == Ended::done)) {
+        // The sums of a checkpoint are those of launches that have ended.
+        if (pending.empty() && is_due)
+            write_checkpoint_();
+        is_due = is_checkpoint_due_ && !plan.done() && is_checkpoint_due_();
         // The next launch waits in the queue while the one before it runs.
-        while (pending.size() < 2 && !plan.done() && ended == Ended::done) {
+        while (pending.size() < 2 && !plan.done() && ended == Ended::done &&
+               (!is_due || pending.empty())) {
             Pending next{plan.next(), {}, std::chrono::steady_clock::now()};
             enqueue(next.launch, &next.event);
             if (recorder_)
@@ -307,21 +313,90 @@ bool PathTracer::render(int spp, Picture &picture, RenderStats &stats) {
     return ended == Ended::stopped;
 }
 
+void PathTracer::keep_work() {
+    work_ = work();
+    last_plan_.reset();
+}
+
+/// What is in the sums; a part of a block is not, as it lies beyond those that are set aside.
+Work PathTracer::work() const {
+    Work work = work_;
+    if (last_plan_ && !is_beyond_)
+        for (const WorkPiece &piece : last_plan_->work())
+            work.push_back(piece);
+    return joined(std::move(work));
+}
+
 PathTracer::Ended PathTracer::go_on(int done, int spp, double slow_seconds) {
     const bool is_whole = whole_blocks(spp) == spp;
+    keep_work();
     if (done == 0) {
+        work_.clear();
         film_->forget();
         film_->begin(bands_.front());
         progress_total_ = 1;
     } else if (is_beyond_) {
         film_->restore();
     }
-    if (!is_whole && done > 0 && !is_beyond_)
+    if (!is_whole && !(is_beyond_ && done > 0))
         film_->set_aside(context_);
     is_beyond_ = !is_whole;
     scene_->set_samples(queue_, spp);
     last_plan_.emplace(plan_of(bands_.front(), spp, blocks_of(done)));
     return run(*last_plan_, slow_seconds);
+}
+
+PathTracer::Ended PathTracer::add(Work pieces) {
+    Ended ended = Ended::done;
+    progress_total_ = 1;
+    while (!pieces.empty() && ended == Ended::done) {
+        // A plan takes a piece of each colour, of the same blocks.
+        Work together = {pieces.front()};
+        for (const WorkPiece &piece : pieces)
+            if (piece.first_block == together[0].first_block &&
+                piece.end_block == together[0].end_block && piece.colour > together.back().colour)
+                together.push_back(piece);
+        std::erase_if(pieces, [&](const WorkPiece &piece) {
+            return std::find(together.begin(), together.end(), piece) != together.end();
+        });
+        keep_work();
+        const int samples = CLR_BLOCK_START(together[0].end_block);
+        scene_->set_samples(queue_, samples);
+        last_plan_.emplace(plan_of(bands_.front(), samples, together[0].first_block));
+        last_plan_->restrict_to(together);
+        ended = run(*last_plan_, no_limit);
+    }
+    return ended;
+}
+
+FilmLayout PathTracer::layout(PixelFormat format) const {
+    return {static_cast<int>(tiles_.width),
+            static_cast<int>(tiles_.height),
+            flat_.frame.film_exponent,
+            config_.LANES,
+            format,
+            {tiles_.columns(), tiles_.rows(), config_.FILTER == CLR_FILTER_SPLATTED},
+            control_,
+            tiles_.measured};
+}
+
+void PathTracer::load(const Checkpoint &checkpoint) {
+    if (!(checkpoint.layout == layout(checkpoint.layout.format)))
+        throw DeviceError("the checkpoint's sums have another layout than this device's: expected "
+                          "a device of the kind that has begun the render");
+    film_->load(checkpoint.film, checkpoint.control);
+    work_ = checkpoint.work;
+    const int samples = samples_of(checkpoint);
+    last_plan_.emplace(plan_of(bands_.front(), samples, blocks_of(samples)));
+}
+
+Checkpoint PathTracer::checkpoint(PixelFormat format) const {
+    Checkpoint checkpoint;
+    checkpoint.layout = layout(format);
+    checkpoint.film.exponent = checkpoint.layout.exponent;
+    film_->read_all(is_beyond_, checkpoint.film, checkpoint.control);
+    checkpoint.work = work();
+    return checkpoint;
 }
 
 int PathTracer::samples_of_all() const {

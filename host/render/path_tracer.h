@@ -6,6 +6,7 @@
 #include "device/kernel_program.h"
 #include "device_film.h"
 #include "device_scene.h"
+#include "film/checkpoint.h"
 #include "flatten/flat_scene.h"
 #include "launch_plan.h"
 #include "picture.h"
@@ -13,6 +14,7 @@
 #include "render.h"
 
 #include <chrono>
+#include <functional>
 #include <future>
 #include <limits>
 #include <memory>
@@ -41,6 +43,11 @@ public:
     PathTracer(const DeviceEntry &entry, FlatScene &flat, const KernelConfig &config,
                const RenderOptions &options);
 
+    /// From now on asks after each launch whether a checkpoint is due, and has it written then.
+    void on_checkpoint(std::function<bool()> is_due, std::function<void()> write) {
+        is_checkpoint_due_ = std::move(is_due);
+        write_checkpoint_ = std::move(write);
+    }
     /// Starts to compile, on a thread of its own.
     void start_compiling();
     /// Waits for the kernel.
@@ -56,7 +63,16 @@ public:
     /// Stopped, tiles have different numbers of samples: it cannot go on then. Ends as `slow`, from
     /// where it can go on, where the first pass turns out to take longer than `slow_seconds`.
     Ended go_on(int done, int spp, double slow_seconds = no_limit);
-    /// Takes the film as go_on() has left it over.
+    /// What the film's sums mean; `format`: of the picture.
+    [[nodiscard]] FilmLayout layout(PixelFormat format) const;
+    /// Renders these pieces, all of whole blocks, beside what is there.
+    Ended add(Work pieces);
+    /// The sums of a checkpoint become the film's, which is empty.
+    void load(const Checkpoint &checkpoint);
+    /// The sums of all whole blocks that are there, and which they are; without `options`. Only
+    /// between launches: where on_checkpoint() calls, or no other call is under way.
+    [[nodiscard]] Checkpoint checkpoint(PixelFormat format) const;
+    /// Takes the film as the last call has left it over.
     void read(Picture &picture, RenderStats &stats);
     /// Samples that every pixel has.
     [[nodiscard]] int samples_of_all() const;
@@ -82,6 +98,8 @@ private:
     Ended render_bands(int spp, double slow_seconds, Picture &picture, RenderStats &stats);
     void take(Picture &picture, const Band &band, const LaunchPlan &plan);
     Ended run(LaunchPlan &plan, double slow_seconds);
+    void keep_work();
+    [[nodiscard]] Work work() const;
     void enqueue(const LaunchPlan::Launch &launch, cl::Event *event);
     void finish(Pending &pending, LaunchPlan &plan);
     LaunchPlan plan_of(const Band &band, int spp, int first_block = 0);
@@ -103,13 +121,16 @@ private:
     std::unique_ptr<DeviceScene> scene_;
     std::unique_ptr<DeviceFilm> film_;
     LaunchPace pace_;
+    std::function<bool()> is_checkpoint_due_;
+    std::function<void()> write_checkpoint_;
     std::unique_ptr<ProfileRecorder> recorder_; ///< where a profile is wanted
     double paths_done_ = 0;                     ///< of the picture as it stands
     double progress_ = 0, progress_total_ = 1;  ///< paths, with those that are traced again
     bool has_samples_ = false;                  ///< a launch has ended
     double seconds_read_ = 0;
     std::chrono::steady_clock::time_point last_finish_{};
-    std::optional<LaunchPlan> last_plan_; ///< of go_on()
+    std::optional<LaunchPlan> last_plan_; ///< of go_on() and add()
+    Work work_;                           ///< in the film, of whole blocks, before last_plan_
     bool is_beyond_ = false; ///< the film has samples of a part of a block, which go_on() has added
 };
 

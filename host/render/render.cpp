@@ -128,6 +128,8 @@ private:
     void set_frame();
     void report_to(const RenderOptions &options);
     void render_by_rules();
+    PathTracer::Ended begin_with_work();
+    void write_checkpoint();
     void measure_error(StoppingRule &rule);
     void set_finish_seconds(StoppingRule &rule);
     void read_film() { tracer_->read(*picture_, stats_); }
@@ -149,6 +151,8 @@ private:
     double paths_before_ = 0; ///< of the steps before this one
     int done_ = 0;
     bool stopped_ = false;
+    bool has_picture_ = false; ///< every pixel has had a sample
+    PixelFormat format_;
 };
 
 Rendering::Rendering(Scene &&scene, const RenderOptions &options)
@@ -156,7 +160,7 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
       spp_(options.spp > 0 ? options.spp : scene.sample_count) {
     stats_.seconds_device = watch_.lap("open the device");
     report_to(options);
-    const PixelFormat format = scene.film.pixel_format;
+    const PixelFormat format = format_ = scene.film.pixel_format;
     flat_ = flatten(scene, options_.sampling);
     scene = {};
     config_ = configure(flat_, entry_, options_);
@@ -165,6 +169,8 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     // The kernel is compiled while the hierarchy is being built.
     tracer_ = std::make_unique<PathTracer>(entry_, flat_, config_, options_);
     tracer_->start_compiling();
+    if (options_.write_checkpoint)
+        tracer_->on_checkpoint(options_.checkpoint_due, [this] { write_checkpoint(); });
     build_hierarchy(flat_);
     stats_.host_bytes = flat_.bytes();
     stats_.seconds_build = watch_.lap("build");
@@ -221,10 +227,10 @@ void Rendering::report_to(const RenderOptions &options) {
 void Rendering::render_all() {
     const bool is_timed = options_.deadline != std::chrono::steady_clock::time_point{};
     render_start_ = now();
-    if (is_timed || options_.target_error > 0) {
+    if (is_timed || options_.target_error > 0 || options_.write_checkpoint || options_.resumed) {
         if (!in_one_piece())
             throw DeviceError("the picture is so large that it is rendered in bands, where only a "
-                              "number of samples can end the render");
+                              "number of samples can end the render, without checkpoints");
         StopLimits limits{.samples = spp_, .error = options_.target_error};
         if (is_timed)
             limits.deadline = std::chrono::duration<double>(options_.deadline - origin_).count();
@@ -237,11 +243,38 @@ void Rendering::render_all() {
     stats_.seconds_render = watch_.lap("render") - tracer_->seconds_read();
 }
 
+/// The work that does not lie in steps: what a checkpoint lacks of its blocks, and a part.
+PathTracer::Ended Rendering::begin_with_work() {
+    Work done;
+    if (options_.resumed) {
+        tracer_->load(*options_.resumed);
+        done = options_.resumed->work;
+    }
+    const WorkGrid grid = tracer_->layout(format_).grid;
+    int end = 0;
+    for (const WorkPiece &piece : done)
+        end = std::max(end, piece.end_block);
+    const Work wanted = options_.parts > 1
+                            ? part_of_work(grid, blocks_of(spp_), options_.part, options_.parts)
+                            : all_work(grid, 0, end);
+    const auto ended = tracer_->add(missing_work(wanted, done));
+    paths_before_ = tracer_->paths();
+    if (ended == PathTracer::Ended::done && end > 0 && options_.parts == 1) {
+        rule_->go_on_from(CLR_BLOCK_START(end));
+        if (options_.target_error > 0)
+            measure_error(*rule_);
+    }
+    return ended;
+}
+
 /// Step by step, as the rules have it.
 void Rendering::render_by_rules() {
     StoppingRule &rule = *rule_;
-    auto ended = PathTracer::Ended::done;
-    while (const auto step = rule.next(now())) {
+    auto ended = begin_with_work();
+    while (ended != PathTracer::Ended::stopped && options_.parts == 1) {
+        const auto step = rule.next(now());
+        if (!step)
+            break;
         const double start = now();
         // What is rendered again stays in the picture until it has been.
         if (rule.shown() > rule.whole() && !step->measure)
@@ -254,14 +287,13 @@ void Rendering::render_by_rules() {
             rule.too_slow();
             continue;
         }
-        const bool is_first = rule.shown() == 0;
         rule.rendered(*step, now() - start);
         if (step->measure)
             measure_error(rule);
-        if (is_first)
+        if (!std::exchange(has_picture_, true))
             set_finish_seconds(rule);
     }
-    stats_.spp = rule.shown();
+    stats_.spp = options_.parts > 1 ? spp_ : rule.shown();
     if (ended == PathTracer::Ended::stopped) {
         stats_.spp = std::max(rule.shown(), tracer_->samples_of_all());
         stopped_ = !rule.is_overdue(now());
@@ -269,6 +301,14 @@ void Rendering::render_by_rules() {
     }
     read_film();
     done_ = rule.whole();
+    if (options_.write_checkpoint)
+        write_checkpoint();
+}
+
+void Rendering::write_checkpoint() {
+    read_film();
+    const RenderResult result = result_of(Picture(*picture_));
+    options_.write_checkpoint(tracer_->checkpoint(format_), result.image);
 }
 
 void Rendering::measure_error(StoppingRule &rule) {

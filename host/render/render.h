@@ -2,6 +2,7 @@
 /// From a parsed scene to a picture.
 
 #include "config/sampling_options.h"
+#include "film/checkpoint.h"
 #include "film/control.h"
 #include "memory_need.h"
 #include "render_progress.h"
@@ -44,6 +45,13 @@ struct RenderOptions {
     Profile *profile = nullptr; ///< filled where given, with a kernel that counts
     std::function<void(const RenderProgress &)> on_progress; ///< called after each launch
     std::function<bool()> should_stop;                       ///< asked after each launch
+    /// Goes on from here: the same scene and options, but for `spp` and what else ends a render.
+    std::shared_ptr<const Checkpoint> resumed;
+    int part = 1, parts = 1; ///< of the samples, which end with a block: part_of_work()
+    /// Gets the sums, without `options`, and the picture, whenever checkpoint_due() says so after a
+    /// launch, and at the end.
+    std::function<void(const Checkpoint &, const Image &)> write_checkpoint;
+    std::function<bool()> checkpoint_due;
 };
 
 /// What a run tells of itself. Seconds are wall time.

@@ -78,13 +78,13 @@ double StoppingRule::affordable(double now) const {
     return cost > 0 ? std::max(left / cost, 0.0) : std::numeric_limits<double>::infinity();
 }
 
-/// Where the next step ends: `goal` samples are allowed, `wanted` have the error that is asked for.
-int StoppingRule::end_of_step(double goal, double wanted) const {
+/// Where the next step ends, of those that lead to `goal` samples.
+int StoppingRule::end_of_step(double goal) const {
     const int next = next_boundary(whole_);
     if (goal < next)
         return static_cast<int>(goal);
     // The law is checked before it reaches far, and so is the speed.
-    double reach = wanted < goal || !std::isfinite(goal) ? goal : whole_ + (goal - whole_) / 2;
+    double reach = std::isfinite(limits_.deadline) ? whole_ + (goal - whole_) / 2 : goal;
     if (limits_.error > 0)
         reach = std::min(reach, longest_reach * std::max(whole_, first_measured));
     return std::max(boundary_before(std::min(reach, goal)), next);
@@ -111,6 +111,11 @@ std::optional<StoppingRule::Step> StoppingRule::next(double now) {
         return Step{first, by_error, slow};
     }
 
+    // A render that goes on from a checkpoint does not know its speed.
+    if (by_time && !(seconds_a_sample() > 0))
+        return now < limits_.deadline
+                   ? std::optional(Step{std::min(next_boundary(whole_), limits_.samples), false})
+                   : stop(StopReason::time);
     const double in_time = whole_ + std::floor(affordable(now));
     if (in_time <= shown_)
         return stop(StopReason::time);
@@ -124,7 +129,7 @@ std::optional<StoppingRule::Step> StoppingRule::next(double now) {
             wanted = block_end;
     }
     const double goal = std::min({double(limits_.samples), in_time, wanted});
-    const int end = end_of_step(goal, wanted);
+    const int end = end_of_step(goal);
     const bool is_last = end >= in_time && end < wanted;
     return Step{end, by_error && !is_last};
 }

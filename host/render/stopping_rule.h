@@ -51,6 +51,8 @@ public:
         /// Where the first pass will take longer than so many seconds, too_slow() has to be told.
         double slow_seconds = std::numeric_limits<double>::infinity();
     };
+    /// Every pixel has so many samples already, whole blocks.
+    void go_on_from(int samples) { whole_ = shown_ = samples; }
     /// The next step, or nothing: the render is done.
     std::optional<Step> next(double now);
 
@@ -79,7 +81,7 @@ public:
 private:
     [[nodiscard]] double seconds_a_sample() const;
     [[nodiscard]] double affordable(double now) const;
-    [[nodiscard]] int end_of_step(double goal, double wanted) const;
+    [[nodiscard]] int end_of_step(double goal) const;
     std::optional<Step> stop(StopReason reason);
 
     StopLimits limits_;

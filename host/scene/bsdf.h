@@ -147,6 +147,10 @@ struct Bsdf {
 
 struct Scene;
 
+/// Whether a BSDF by itself, without those it nests, reflects or refracts some light so sharply
+/// that what it throws of a small light are caustics.
+bool is_mirror_like(const Scene &scene, const Bsdf &bsdf);
+
 /// Whether light passes the surface, anywhere on it.
 bool lets_light_through(const Scene &scene, int bsdf);
 

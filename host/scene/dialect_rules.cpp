@@ -1,6 +1,7 @@
 #include "dialect_rules.h"
 
 #include "../log.h"
+#include "mitsuba_properties.h"
 #include "mitsuba_text.h"
 
 #include <charconv>
@@ -164,12 +165,19 @@ void upgrade_uv(pugi::xml_node object, XmlFile &file) {
     }
 }
 
-/// One wrap mode for both axes: the second of two equal ones goes.
-void upgrade_wrap_modes(pugi::xml_node object) {
+/// One wrap mode for both axes: the second of two equal ones goes. What is not stated repeats.
+void upgrade_wrap_modes(pugi::xml_node object, const XmlFile &file) {
     const pugi::xml_node u = property_of(object, "wrap_mode_u");
     const pugi::xml_node v = property_of(object, "wrap_mode_v");
-    if (u && v && to_lower(u.attribute("value").value()) == to_lower(v.attribute("value").value()))
-        object.remove_child(v);
+    if (!v)
+        return;
+    const std::string along_u = u ? to_lower(u.attribute("value").value()) : "repeat";
+    if (along_u != to_lower(v.attribute("value").value()))
+        throw UnsupportedError(file.where(v), "\"wrap_mode_v\" is " +
+                                                  in_quotes(v.attribute("value").value()) +
+                                                  ", \"wrap_mode_u\" " + in_quotes(along_u) +
+                                                  ", expected one wrap mode for both");
+    object.remove_child(v);
 }
 
 /// A `gamma` of 1 tells that the texels are linear.
@@ -220,7 +228,7 @@ void upgrade_forms(pugi::xml_node object, const std::string &tag, const std::str
                    XmlFile &file) {
     if (tag == "texture") {
         upgrade_uv(object, file);
-        upgrade_wrap_modes(object);
+        upgrade_wrap_modes(object, file);
         if (is_listed("bitmap ldrtexture exrtexture", type))
             upgrade_gamma(object, file);
     } else if ((tag == "emitter" || tag == "luminaire") && is_listed("sky sun sunsky", type)) {

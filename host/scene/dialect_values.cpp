@@ -55,9 +55,11 @@ void upgrade_colour(pugi::xml_node value, XmlFile &file) {
     if (!is_srgb && tag != "rgb" && tag != "spectrum")
         return;
     value.remove_attribute("intent"); // of spectral rendering alone
+    const SourceLocation where = file.where(value);
+    if (is_srgb && !value.attribute("value"))
+        throw InputError(where, "<srgb> has no value, expected \"#rrggbb\" or 3 numbers or 1");
     if (!value.attribute("value"))
         return;
-    const SourceLocation where = file.where(value);
     const std::string text = value.attribute("value").value();
 
     if (is_srgb) {

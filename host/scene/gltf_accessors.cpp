@@ -67,9 +67,17 @@ std::size_t components_of(int type) {
         return 3;
     case TINYGLTF_TYPE_VEC4:
         return 4;
+    case TINYGLTF_TYPE_MAT4:
+        return 16;
     default:
         return 0;
     }
+}
+
+std::string name_of(int components) {
+    return components == 1    ? "SCALAR"
+           : components == 16 ? "MAT4"
+                              : fmt::format("VEC{}", components);
 }
 
 /// `count` elements of a view, which it is certain to hold.
@@ -197,8 +205,8 @@ Numbers read_numbers(const Document &document, int index, int least, int most,
     if (numbers.components < static_cast<std::size_t>(least) ||
         numbers.components > static_cast<std::size_t>(most))
         throw document.error(own, fmt::format("has the wrong type for {}, expected {}{}", place,
-                                              least == 1 ? "SCALAR" : fmt::format("VEC{}", least),
-                                              most > least ? fmt::format(" to VEC{}", most) : ""));
+                                              name_of(least),
+                                              most > least ? " to " + name_of(most) : ""));
     numbers.values.resize(accessor.count * numbers.components);
     std::size_t bad = 0;
     for_each_number(

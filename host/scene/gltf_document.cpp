@@ -287,7 +287,6 @@ Document read_document(const std::string &path) {
     take_images(root, document);
     document.has_animations = array_of(root, "animations") != nullptr;
     root.erase("animations");
-    root.erase("skins");
     drop_compressed_indices(root);
     parse_model(root, document);
     return document;

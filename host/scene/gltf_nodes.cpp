@@ -87,7 +87,6 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
         open.push_back({*root, glm::dmat4(1.0)});
     std::vector<PlacedNode> placed;
     std::vector<bool> seen(document.model.nodes.size(), false);
-    bool has_skins = false;
     while (!open.empty()) {
         const Open at = open.back();
         open.pop_back();
@@ -97,7 +96,6 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
         if (seen[static_cast<std::size_t>(at.node)])
             throw document.error(place, "is reached twice, expected nodes that are trees");
         seen[static_cast<std::size_t>(at.node)] = true;
-        has_skins |= node.skin >= 0;
         PlacedNode here{&node, at.node, at.parent * own_matrix(document, node, place)};
         if (!is_finite(here.to_world))
             throw document.error(place, "its place is not finite, expected numbers up to 1e+30");
@@ -105,9 +103,6 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
             open.push_back({*child, here.to_world});
         placed.push_back(std::move(here));
     }
-    if (has_skins)
-        document.warn("skins", "are ignored: meshes are shown as they are bound, in the places of "
-                               "their nodes");
     if (document.has_animations)
         document.warn("animations", "are ignored");
     return placed;

@@ -16,8 +16,8 @@ struct PlacedNode {
     glm::dmat4 to_world{1.0};
 };
 
-/// The nodes of the default scene, else of the first, else all, each before its children. Skins and
-/// weights of morph targets are warned of. Throws InputError where the nodes are no trees.
+/// The nodes of the default scene, else of the first, else all, each before its children.
+/// Animations are warned of. Throws InputError where the nodes are no trees.
 std::vector<PlacedNode> placed_nodes(const Document &document);
 
 } // namespace clrender::gltf

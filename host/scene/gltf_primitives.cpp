@@ -151,7 +151,7 @@ bool is_mirrored(const Mesh &mesh, const Triangle &t) {
 } // namespace
 
 Primitive read_primitive(const Document &document, const tinygltf::Primitive &source,
-                         const std::string &place) {
+                         const std::string &place, bool is_skinned) {
     Primitive primitive;
     primitive.material = source.material;
     primitive.place = place;
@@ -192,6 +192,13 @@ Primitive read_primitive(const Document &document, const tinygltf::Primitive &so
         if (const int set = set_of(name); set >= 0)
             primitive.coordinates[set] = read(name, 2, 2);
     primitive.colors = read("COLOR_0", 3, 4);
+    for (int set = 0; is_skinned && attribute_of(source, "JOINTS_" + std::to_string(set)) >= 0;
+         ++set) {
+        primitive.joints.push_back(read("JOINTS_" + std::to_string(set), 4, 4));
+        primitive.weights.push_back(read("WEIGHTS_" + std::to_string(set), 4, 4));
+        if (primitive.weights.back().values.size() != primitive.joints.back().values.size())
+            throw document.error(place, fmt::format("has no WEIGHTS_{} for its joints", set));
+    }
     clamp(primitive.colors.values);
     if (!source.targets.empty())
         document.warn(place, "morph targets are ignored");

@@ -13,16 +13,17 @@ namespace clrender::gltf {
 /// The triangles of a primitive, before its material is known.
 struct Primitive {
     int material = -1;
-    Mesh mesh;                          ///< positions, normals and triangles
-    std::map<int, Numbers> coordinates; ///< TEXCOORD_<n>
-    Numbers colors;                     ///< COLOR_0: three or four, or none
+    Mesh mesh;                            ///< positions, normals and triangles
+    std::map<int, Numbers> coordinates;   ///< TEXCOORD_<n>
+    Numbers colors;                       ///< COLOR_0: three or four, or none
+    std::vector<Numbers> joints, weights; ///< JOINTS_<n>, WEIGHTS_<n>, of skinned ones
     std::string place;
 };
 
 /// Reads a primitive; one without triangles (points, lines, no POSITION) is warned of. Throws
 /// InputError.
 Primitive read_primitive(const Document &document, const tinygltf::Primitive &source,
-                         const std::string &place);
+                         const std::string &place, bool is_skinned = false);
 
 /// A mesh and its surface.
 struct SurfacedMesh {

@@ -5,6 +5,7 @@
 #include "gltf_images.h"
 #include "gltf_nodes.h"
 #include "gltf_primitives.h"
+#include "gltf_skins.h"
 #include "gltf_surfaces.h"
 #include "model_surroundings.h"
 
@@ -30,6 +31,9 @@ constexpr std::size_t many_triangles = 100'000;
 /// Materials whose emission is brighter than this light a scene; others are what glows in one.
 constexpr double least_lamp = 1;
 
+/// A mesh and the skin that moves it, or -1.
+using ShownMesh = std::pair<int, int>;
+
 class SceneMaker {
 public:
     SceneMaker(const Document &document, Scene &scene)
@@ -43,7 +47,7 @@ public:
 
 private:
     void read_primitives();
-    void place(int mesh, const std::vector<glm::dmat4> &places);
+    void place(const ShownMesh &mesh, const std::vector<glm::dmat4> &places);
     void add_shapes(const SurfacedMesh &part, const glm::dmat4 &to_world);
     [[nodiscard]] Shape shape_of(const SurfacedMesh &part, const glm::dmat4 &to_world) const;
 
@@ -52,9 +56,9 @@ private:
     std::vector<PlacedNode> nodes_;
     Images images_;
     SurfaceMaker surfaces_;
-    std::map<int, std::vector<glm::dmat4>> places_;    ///< by mesh
-    std::map<int, std::vector<Primitive>> primitives_; ///< by mesh
-    std::map<int, std::vector<SurfacedMesh>> parts_;   ///< by mesh
+    std::map<ShownMesh, std::vector<glm::dmat4>> places_;
+    std::map<ShownMesh, std::vector<Primitive>> primitives_;
+    std::map<ShownMesh, std::vector<SurfacedMesh>> parts_;
     bool is_lit_ = false;
     bool has_camera_ = false;
 };
@@ -62,19 +66,25 @@ private:
 /// Reads the meshes that nodes show, and notes the pictures that their materials need.
 void SceneMaker::read_primitives() {
     std::set<int> materials;
-    for (const auto &[index, places] : places_) {
+    std::map<int, glm::dmat4> joints;
+    for (const PlacedNode &node : nodes_)
+        joints[node.index] = node.to_world;
+    for (const auto &[shown, places] : places_) {
+        const auto [index, skin] = shown;
         const std::string place = place_of("meshes", index);
         const tinygltf::Mesh &mesh =
             element(document_, document_.model.meshes, index, "mesh", "nodes");
         for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-            Primitive primitive =
-                read_primitive(document_, mesh.primitives[i],
-                               place + "." + place_of("primitives", static_cast<int>(i)));
+            Primitive primitive = read_primitive(
+                document_, mesh.primitives[i],
+                place + "." + place_of("primitives", static_cast<int>(i)), skin >= 0);
             if (primitive.mesh.triangles.empty())
                 continue;
+            if (skin >= 0)
+                apply_skin(document_, skin, joints, primitive);
             if (materials.insert(primitive.material).second)
                 images_.want(surfaces_.material(primitive.material));
-            primitives_[index].push_back(std::move(primitive));
+            primitives_[shown].push_back(std::move(primitive));
         }
     }
 }
@@ -83,20 +93,22 @@ void SceneMaker::add_meshes() {
     for (const PlacedNode &node : nodes_) {
         if (node.node->mesh < 0)
             continue;
-        if (glm::determinant(glm::dmat3(node.to_world)) == 0)
+        if (node.node->skin >= 0) // in the world already, as often as it is named
+            places_[{node.node->mesh, node.node->skin}] = {glm::dmat4(1.0)};
+        else if (glm::determinant(glm::dmat3(node.to_world)) == 0)
             document_.warn(place_of("nodes", node.index),
                            "its mesh has no volume in the world and is ignored");
         else
-            places_[node.node->mesh].push_back(node.to_world);
+            places_[{node.node->mesh, -1}].push_back(node.to_world);
     }
     read_primitives();
     images_.read();
-    for (auto &[index, primitives] : primitives_)
+    for (auto &[shown, primitives] : primitives_)
         for (Primitive &primitive : primitives)
             for (SurfacedMesh &part : surfaced(document_, std::move(primitive), surfaces_))
-                parts_[index].push_back(std::move(part));
-    for (const auto &[index, places] : places_)
-        place(index, places);
+                parts_[shown].push_back(std::move(part));
+    for (const auto &[shown, places] : places_)
+        place(shown, places);
 }
 
 Shape SceneMaker::shape_of(const SurfacedMesh &part, const glm::dmat4 &to_world) const {
@@ -119,7 +131,7 @@ void SceneMaker::add_shapes(const SurfacedMesh &part, const glm::dmat4 &to_world
         add_area_light(scene_, part.surface.radiance);
 }
 
-void SceneMaker::place(int mesh, const std::vector<glm::dmat4> &places) {
+void SceneMaker::place(const ShownMesh &mesh, const std::vector<glm::dmat4> &places) {
     std::size_t triangles = 0;
     for (const SurfacedMesh &part : parts_[mesh])
         triangles += part.mesh->triangles.size();

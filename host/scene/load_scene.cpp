@@ -1,5 +1,6 @@
 #include "load_scene.h"
 
+#include "../input_file.h"
 #include "../log.h"
 #include "../memory_limit.h"
 #include "camera_place.h"
@@ -74,6 +75,7 @@ std::uint64_t flat_bytes_estimate(const Scene &scene) {
 
 Scene load_scene(const std::string &path, const LoadOptions &options) {
     forget_memory_claims();
+    forget_input_files();
     Scene scene = read_scene(path, options);
     if (const std::string reason = claim_memory(flat_bytes_estimate(scene)); !reason.empty())
         throw InputError({path, 0}, "the scene " + reason);

@@ -16,8 +16,8 @@ struct LoadOptions {
     bool all_faults = false; ///< goes on behind the first fault of a scene, and throws all in one
 };
 
-/// Reads a Mitsuba XML scene, or a bare .obj / .ply model (given a framing camera and a soft
-/// light). Throws InputError. Warns of every -D that nothing uses and of all that is ignored.
+/// Reads a Mitsuba XML scene, or a bare .gltf / .glb / .obj / .ply model (given a framing
+/// camera and a soft light where it has none). Throws InputError. Warns of every -D that nothing uses and of all that is ignored.
 Scene load_scene(const std::string &path, const LoadOptions &options = {});
 
 } // namespace clrender

@@ -113,7 +113,8 @@ void MeshStream::read(char *bytes, std::size_t count) {
 }
 
 /// Where a mesh begins, from the dictionary at the end of the file.
-std::uint64_t find_mesh(InputFile &file, int index, int version, const std::string &path) {
+std::uint64_t find_mesh(InputFile &file, int index, int version, const std::string &path,
+                        const SourceLocation &referrer) {
     const std::uint64_t word = version == 3 ? 4 : 8;
     std::array<char, 8> bytes{};
     const auto fail = [&](const std::string &reason) { throw InputError({path, 0}, reason); };
@@ -125,8 +126,10 @@ std::uint64_t find_mesh(InputFile &file, int index, int version, const std::stri
     if (count == 0 || count > (file.size() - header_bytes - 4) / word)
         fail(fmt::format("a dictionary of {} meshes, but the file is too short for it", count));
     if (static_cast<std::uint32_t>(index) >= count)
-        fail(fmt::format("has no mesh {}, expected a \"shape_index\" from 0 to {}", index,
-                         count - 1));
+        throw InputError(referrer.file.empty() ? SourceLocation{path, 0} : referrer,
+                         fmt::format("\"shape_index\" is {}, but {} has {} meshes, expected a "
+                                     "number from 0 to {}",
+                                     index, path, count, count - 1));
     const std::uint64_t dictionary = file.size() - 4 - word * count;
     file.seek(dictionary + word * static_cast<std::uint64_t>(index));
     file.read(bytes.data(), static_cast<std::size_t>(word));
@@ -241,7 +244,7 @@ Mesh read_serialized_mesh(const std::string &path, const MeshReadOptions &option
     int version = read_header(file, path);
     std::uint64_t offset = 0;
     if (options.shape_index > 0) {
-        offset = find_mesh(file, options.shape_index, version, path);
+        offset = find_mesh(file, options.shape_index, version, path, referrer);
         file.seek(offset);
         version = read_header(file, path);
     }

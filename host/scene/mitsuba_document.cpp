@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t max_include_depth = 16;
 constexpr std::size_t max_files = 4096; ///< includes may fan out: 16 levels alone are no limit
 
-const std::vector<std::string> object_tags{"bsdf",   "emitter", "film",    "integrator",
-                                           "medium", "phase",   "rfilter", "sampler",
-                                           "sensor", "shape",   "texture", "volume"};
+const std::vector<std::string> object_tags{
+    "bsdf",    "emitter", "film",  "integrator", "medium",  "phase", "rfilter",
+    "sampler", "sensor",  "shape", "subsurface", "texture", "volume"};
 const std::vector<std::string> value_tags{"boolean", "float",    "integer",   "point", "rgb",
                                           "string",  "spectrum", "transform", "vector"};
 const std::vector<std::string> other_tags{"alias", "default", "include", "path", "ref"};
@@ -259,6 +259,7 @@ Spectrum read_spectrum_file(const std::string &path) {
     std::error_code error;
     if (std::filesystem::file_size(path, error) > max_bytes || error)
         throw InputError({path, 0}, "the file is too large, expected at most 16 MiB");
+    note_input_file(path);
     std::ifstream stream(path);
     Spectrum spectrum;
     std::string text;

@@ -2,6 +2,7 @@
 
 #include "mitsuba_scene.h"
 #include "mitsuba_transform.h"
+#include "similarity.h"
 
 #include <cmath>
 

@@ -44,13 +44,6 @@ bool is_point_like(const Emitter &emitter) {
            emitter.kind != EmitterKind::envmap && emitter.kind != EmitterKind::sunsky;
 }
 
-bool is_smooth(const Bsdf &bsdf) {
-    return std::holds_alternative<ConductorBsdf>(bsdf.model) ||
-           std::holds_alternative<DielectricBsdf>(bsdf.model) ||
-           std::holds_alternative<ThinDielectricBsdf>(bsdf.model) ||
-           std::holds_alternative<PlasticBsdf>(bsdf.model);
-}
-
 bool lets_pass_straight(const Bsdf &bsdf) {
     return std::holds_alternative<NullBsdf>(bsdf.model) ||
            std::holds_alternative<MaskBsdf>(bsdf.model) ||
@@ -64,6 +57,7 @@ template <typename Items, typename Test> bool has_any(const Items &items, Test t
 /// Warns of light that the scene's own integrator finds and path tracing does not.
 void warn_of_differences(const Scene &scene, const SourceLocation &where, const SameLight &other) {
     const bool has_point_like = has_any(scene.emitters, is_point_like);
+    const auto is_smooth = [&](const Bsdf &bsdf) { return is_mirror_like(scene, bsdf); };
     if (other.finds_caustics && has_point_like && has_any(scene.bsdfs, is_smooth))
         log::warn(where, "light of lights without extent that smooth glass or mirrors bring "
                          "(caustics) is found by this integrator, but not by path tracing");

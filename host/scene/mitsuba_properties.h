@@ -13,7 +13,16 @@ namespace clrender::mitsuba {
 /// What Mitsuba knows and clrender does not (yet): an error only where a picture needs it.
 class UnsupportedError : public InputError {
 public:
-    using InputError::InputError;
+    UnsupportedError(const SourceLocation &where, const std::string &what)
+        : InputError(where, what), where_(where), fault_(what) {}
+
+    /// What the line says, and its place.
+    [[nodiscard]] const SourceLocation &where() const { return where_; }
+    [[nodiscard]] const std::string &fault() const { return fault_; }
+
+private:
+    SourceLocation where_;
+    std::string fault_;
 };
 
 /// All look-ups throw InputError at the line of a value that has the wrong type or size.

@@ -21,7 +21,7 @@ Scene SceneReader::read() {
     // Definitions that others refer to have been read with those; here they mean nothing.
     root.children("texture");
     root.children("spectrum");
-    root.children("medium"); // told of where an object has it
+    check_unused_media(root);
     for (const char *tag : {"film", "sampler"})
         for (const Child *child : root.children(tag))
             log::detail(document_.where(root.object(), child->line).str() + ": <" + tag +
@@ -129,6 +129,7 @@ void SceneReader::read_chosen_sensor(Properties &root) {
 
 void SceneReader::read_view(Properties &root) {
     attempt([&] { read_chosen_sensor(root); });
+    check_other_sensors(root);
 
     const auto integrators = root.children("integrator");
     attempt([&] {
@@ -138,6 +139,33 @@ void SceneReader::read_view(Properties &root) {
         if (!integrators.empty())
             read_integrator(integrators[0]->object);
     });
+}
+
+/// Where all faults are asked for, those of the sensors that are not looked through.
+void SceneReader::check_other_sensors(Properties &root) {
+    const auto sensors = root.children("sensor");
+    const auto chosen = static_cast<std::size_t>(chosen_sensor_.value_or(0));
+    for (std::size_t i = 0; i < sensors.size() && all_faults_; ++i) {
+        SceneReader checker(document_);
+        checker.all_faults_ = false;
+        if (i != chosen)
+            attempt([&] { checker.read_sensor(sensors[i]->object); });
+    }
+}
+
+/// A medium that an object has is a fault of that object; of others it is said that they are
+/// ignored.
+void SceneReader::check_unused_media(Properties &root) {
+    for (const Child *child : root.children("medium")) {
+        const auto has_it = [&](const Object &object) {
+            return std::any_of(object.children.begin(), object.children.end(),
+                               [&](const Child &c) { return c.object == child->object; });
+        };
+        if (std::none_of(document_.objects.begin() + 1, document_.objects.end(), has_it))
+            log::warn(document_.where(root.object(), child->line),
+                      "medium \"" + document_.at(child->object).type +
+                          "\" is ignored: nothing uses it");
+    }
 }
 
 void SceneReader::check_unused_bsdfs(Properties &root) {
@@ -150,7 +178,7 @@ void SceneReader::check_unused_bsdfs(Properties &root) {
         try {
             checker.read_bsdf(child->object);
         } catch (const UnsupportedError &error) {
-            log::warn(std::string(error.what()) + " (no shape uses it)");
+            log::warn(error.where(), error.fault() + " (no shape uses it)");
             checker.open_bsdfs_.clear();
         } catch (const InputError &) {
             checker.open_bsdfs_.clear();

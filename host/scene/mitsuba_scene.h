@@ -40,6 +40,8 @@ private:
     void read_files();
     void read_view(Properties &root);
     void read_chosen_sensor(Properties &root);
+    void check_other_sensors(Properties &root);
+    void check_unused_media(Properties &root);
     void check_unused_bsdfs(Properties &root);
     void place_default_sensor();
     void warn_of_missing(Properties &root) const;
@@ -171,9 +173,6 @@ void check_thickness(const Properties &properties, const Shape &shape);
 
 /// What a light's texture or map is multiplied with; 1 where nothing is stated.
 double read_emitter_scale(Properties &properties);
-
-/// True if a transformation turns, mirrors and scales alone, as far as float32 exporters manage.
-bool is_similarity(const glm::dmat3 &m);
 
 /// The world-space box around all shapes and instances; false if there are none.
 bool bounds_of(const Scene &scene, glm::dvec3 &lowest, glm::dvec3 &highest);

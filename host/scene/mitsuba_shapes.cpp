@@ -7,6 +7,7 @@
 #include "mitsuba_text.h"
 #include "mitsuba_transform.h"
 #include "shape_bounds.h"
+#include "similarity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,18 +28,6 @@ void extend(glm::dvec3 &lowest, glm::dvec3 &highest, const glm::dvec3 &point) {
 }
 
 } // namespace
-
-bool is_similarity(const glm::dmat3 &m) {
-    constexpr double tolerance = 1e-4;
-    const double size = glm::length(m[0]);
-    for (int i = 0; i < 3; ++i) {
-        if (std::abs(glm::length(m[i]) - size) > tolerance * size)
-            return false;
-        if (std::abs(glm::dot(m[i], m[(i + 1) % 3])) > tolerance * size * size)
-            return false;
-    }
-    return true;
-}
 
 /// The frame whose third axis is n, as Mitsuba has it (Duff et al., "Building an orthonormal basis,
 /// revisited", JCGT 2017).

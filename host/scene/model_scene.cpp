@@ -1,5 +1,6 @@
 #include "model_scene.h"
 
+#include "../log.h"
 #include "mesh_attributes.h"
 #include "mesh_io.h"
 #include "model_surroundings.h"
@@ -9,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fmt/core.h>
 #include <limits>
 #include <map>
 #include <utility>
@@ -21,8 +23,13 @@ namespace {
 /// Textures that may turn out not to be readable, and the colour that then takes their place.
 using TextureColors = std::vector<std::pair<int, Rgb>>;
 
-Rgb reflectance(const Rgb &colour) {
-    return glm::clamp(colour, 0.0, 1.0);
+/// A colour of a material, which reflects all light at most.
+Rgb reflectance(const ObjMaterial &material, const Rgb &colour) {
+    const Rgb held = glm::clamp(colour, 0.0, 1.0);
+    if (held != colour)
+        log::warn(fmt::format("material \"{}\": its colour {:g} {:g} {:g} is held to 0 to 1",
+                              material.name, colour.r, colour.g, colour.b));
+    return held;
 }
 
 /// Makes BSDFs of the materials of an MTL file.
@@ -39,8 +46,8 @@ public:
             return add_named(material, DielectricBsdf{{ior > 1 ? ior : 1.5, 1}});
         }
         case ObjSurface::mirror:
-            return add_named(material,
-                             ConductorBsdf{add_color(scene_, reflectance(material.specular))});
+            return add_named(material, ConductorBsdf{add_color(
+                                           scene_, reflectance(material, material.specular))});
         case ObjSurface::rough_metal:
             return add_opaque(material, rough_metal(material));
         case ObjSurface::glossy:
@@ -84,7 +91,7 @@ private:
 
     /// Kd, or the texture in its place.
     int diffuse(const ObjMaterial &material) {
-        const Rgb colour = reflectance(material.diffuse);
+        const Rgb colour = reflectance(material, material.diffuse);
         return material.diffuse_map.is_there() ? map(material.diffuse_map, colour, false)
                                                : add_color(scene_, colour);
     }
@@ -124,13 +131,13 @@ private:
         RoughConductorBsdf bsdf;
         bsdf.microfacets.alpha_u = bsdf.microfacets.alpha_v =
             add_color(scene_, Rgb(alpha(material)));
-        bsdf.specular_reflectance = add_color(scene_, reflectance(material.specular));
+        bsdf.specular_reflectance = add_color(scene_, reflectance(material, material.specular));
         return bsdf;
     }
 
     /// A boundary that reflects .08 Ks straight on, as modelling programs export their dielectrics.
     BsdfModel glossy(const ObjMaterial &material) {
-        const Rgb specular = reflectance(material.specular);
+        const Rgb specular = reflectance(material, material.specular);
         const double strength = std::max({specular.r, specular.g, specular.b});
         RoughPlasticBsdf bsdf;
         const double root = std::sqrt(0.08 * strength);

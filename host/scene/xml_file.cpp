@@ -1,5 +1,6 @@
 #include "xml_file.h"
 
+#include "../input_file.h"
 #include "../memory_limit.h"
 
 #include <algorithm>
@@ -80,6 +81,7 @@ void XmlFile::read(const SourceLocation &referrer) {
     if (error || size > max_xml_bytes)
         throw InputError(where, prefix + "the file is too large, expected at most 256 MiB");
 
+    note_input_file(path_);
     std::ifstream stream(path_, std::ios::binary);
     text_.resize(static_cast<std::size_t>(size));
     if (!stream || !stream.read(text_.data(), static_cast<std::streamsize>(size)))

@@ -51,13 +51,7 @@ __kernel void probe_quadrics(__global const Quadric *quadrics, __global const Qu
     probe_out(v, out, first, count, PROBE_OUT, 8u);
     probe_out(light_pdf_quadric(q, n, o, d, at), out, first, count, PROBE_OUT, 15u);
 
-    LightSample s;
-    s.wi = s.radiance = v3_of(0.0f, 0.0f, 0.0f);
-    s.t_max = real_of(0.0f);
-    s.inv_pdf = real_of(1.0f);
-    s.prim = int_of(-1);
-    s.delta = no_lanes();
-    s.valid = all_lanes();
+    LightSample s = light_sample_none(all_lanes());
     light_sample_quadric(q, int_of(0), o, probe_in(in, first, count, PROBE_IN, 7u),
                          probe_in(in, first, count, PROBE_IN, 8u), all_lanes(), &u, &v, &s);
     probe_out3(s.wi, out, first, count, PROBE_OUT, 9u);

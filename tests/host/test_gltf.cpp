@@ -15,8 +15,8 @@
 #include <numbers>
 
 using namespace clrender;
-using test::GltfBuilder;
 using nlohmann::json;
+using test::GltfBuilder;
 
 namespace {
 
@@ -270,20 +270,46 @@ TEST_CASE("normals of a glTF file are unit vectors, and missing ones stay flat",
     CHECK(is_near(glm::dvec3(mesh->normals[2]), {0, .6, .8}));
 }
 
+TEST_CASE("a skin moves vertices with its joints, as the nodes stand", "[gltf]") {
+    GltfBuilder gltf;
+    // The first joint moves by (5, 0, 0), the second turns by 180 degrees about z and was bound at
+    // (0, 1, 0): it takes p to -(p - (0, 1, 0)).
+    const int first = gltf.node({{"translation", {5, 0, 0}}});
+    const int second = gltf.node({{"rotation", {0, 0, 1, 0}}});
+    const int bind = gltf.accessor<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,
+                                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1},
+                                          "MAT4", 2);
+    gltf.add("skins", {{"joints", {first, second}}, {"inverseBindMatrices", bind}});
+    const int joints =
+        gltf.accessor<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 9, 9}, "VEC4", 4);
+    const int weights =
+        gltf.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, .5F, .5F, 0, 0, .5F, .5F, 0, 0}, "VEC4", 4);
+    json square = gltf.square(-1, {{"JOINTS_0", joints}, {"WEIGHTS_0", weights}});
+    gltf.node({{"mesh", gltf.mesh(square)}, {"skin", 0}, {"translation", {100, 0, 0}}});
+    const Scene scene = load(gltf);
+    const Mesh &mesh = *scene.shapes.at(0).mesh;
+    CHECK(scene.shapes[0].to_world == glm::dmat4(1));
+    CHECK(is_near(mesh.positions[0], {4, -1, 0}));
+    CHECK(is_near(mesh.positions[1], {-1, 2, 0}));
+    CHECK(is_near(mesh.positions[2], {(6 - 1) / 2.0, (1 + 0) / 2.0, 0}));
+    gltf.json["skins"][0]["joints"] = {first};
+    CHECK_THROWS_WITH(load(gltf), Catch::Contains("joint 1, of 1"));
+    gltf.json["skins"][0]["joints"] = {first, 77};
+    CHECK_THROWS_WITH(load(gltf), Catch::Contains("node 77 is no part of the scene"));
+}
+
 TEST_CASE("what is not shown of a glTF file is said", "[gltf]") {
     GltfBuilder gltf;
     json square = gltf.square(gltf.add("materials", {{"occlusionTexture", {{"index", 0}}}}));
     gltf.add("textures", {{"source", 0}});
     gltf.add("images", {{"uri", "missing.png"}});
     square["targets"] = {{{"POSITION", 0}}};
-    gltf.node({{"mesh", gltf.mesh(square)}, {"skin", 0}});
+    gltf.node({{"mesh", gltf.mesh(square)}});
     gltf.json["animations"] = {json::object()};
-    gltf.json["skins"] = {{{"joints", {0}}}};
     gltf.json["extensionsUsed"] = {"EXT_of_tomorrow", "KHR_materials_ior"};
     const std::string said = test::stderr_of([&] { (void)load(gltf); });
-    for (const char *what :
-         {"occlusionTexture is ignored", "morph targets are ignored", "skins: are ignored",
-          "animations: are ignored", "EXT_of_tomorrow is not supported"})
+    for (const char *what : {"occlusionTexture is ignored", "morph targets are ignored",
+                             "animations: are ignored", "EXT_of_tomorrow is not supported"})
         CHECK_THAT(said, Catch::Contains(what));
     CHECK_THAT(said, !Catch::Contains("KHR_materials_ior"));
 }

@@ -1,5 +1,6 @@
 /// Integrators that are rendered by path tracing, and those around another one.
 
+#include "flatten/flat_scene.h"
 #include "mitsuba_text_scene.h"
 #include "stderr_of.h"
 
@@ -80,6 +81,28 @@ TEST_CASE("light that path tracing does not find is warned of", "[integrators]")
         has(load(std::string(mirror) + "<emitter type='constant'/>" + integrator("sppm")).said,
             caustics));
 
+    for (const char *smooth :
+         {"<bsdf type='principled'><float name='roughness' value='0'/></bsdf>",
+          "<bsdf type='principled'><float name='roughness' value='.05'/><float name='spec_trans' "
+          "value='1'/></bsdf>",
+          "<bsdf type='principledthin'><float name='roughness' value='0'/></bsdf>",
+          "<bsdf type='roughconductor'><float name='alpha' value='0'/></bsdf>",
+          "<bsdf type='roughdielectric'><float name='alpha' value='.001'/></bsdf>",
+          "<bsdf type='roughplastic'><float name='alpha' value='0'/></bsdf>"})
+        CHECK(has(load(std::string(point_light) + "<shape type='sphere'>" + smooth + "</shape>" +
+                       integrator("bdpt"))
+                      .said,
+                  caustics));
+    for (const char *rough :
+         {"<bsdf type='principled'/>", "<bsdf type='roughconductor'/>",
+          "<bsdf type='roughconductor'><float name='alpha_u' value='0'/><float name='alpha_v' "
+          "value='.2'/></bsdf>",
+          "<bsdf type='roughplastic'/>"})
+        CHECK_FALSE(has(load(std::string(point_light) + "<shape type='sphere'>" + rough +
+                             "</shape>" + integrator("bdpt"))
+                            .said,
+                        caustics));
+
     const char *const shines = "do not shine through";
     CHECK(has(load(std::string(leaf) + point_light + integrator("volpath")).said, shines));
     CHECK_FALSE(has(load(leaf + integrator("volpath")).said, shines));
@@ -99,4 +122,25 @@ TEST_CASE("layers around a picture", "[integrators]") {
     CHECK(has(test::error_of_text(integrator("aov")), "2: integrator \"aov\" has no nested"));
     CHECK(has(test::error_of_text("<integrator type='aov' id='a'><ref id='a'/></integrator>"),
               "is nested, expected a path integrator inside"));
+}
+
+TEST_CASE("paths of no edges bring nothing", "[integrators]") {
+    const std::string content =
+        "<sensor type='perspective'><film type='hdrfilm'><string name='pixel_format' "
+        "value='rgba'/></film></sensor><shape type='sphere'><emitter type='area'/></shape>"
+        "<emitter type='constant'/><emitter type='point'/>";
+    for (const char *depth : {"0", "1"}) {
+        const Scene scene = test::load_text(
+            content +
+            integrator("path", std::string("<integer name='max_depth' value='") + depth + "'/>"));
+        FlatScene flat;
+        const std::string said = test::stderr_of([&] { flat = flatten(scene); });
+        const bool black = *depth == '0';
+        CHECK(has(said, "max_depth 0 leaves no light: the picture is black") == black);
+        CHECK(flat.lights.empty() == black);
+        CHECK(flat.emitters.empty() == black);
+        CHECK((flat.shapes.at(0).emitter == CLR_NONE) == black);
+        CHECK((flat.facts.environment == CLR_ENVIRONMENT_NONE) == black);
+        CHECK(flat.facts.has_alpha == !black);
+    }
 }
