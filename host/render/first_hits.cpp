@@ -27,8 +27,8 @@ KernelConfig config_of_hits(KernelConfig config, int fields) {
     config.BORDER = config.VARIANCE = config.PROFILE = config.HAS_ALPHA = 0;
     config.HIDE_EMITTERS = config.FREE_PASSAGES = config.FINAL_BY_LIGHTS = 0;
     config.ROULETTE = CLR_ROULETTE_NONE;
-    config.SPECULAR_CONNECTORS = config.CONNECTS_SPHERES = config.CONNECTS_GLASS = 0;
-    config.CONNECTS_PLANES = 0;
+    config.SPECULAR_CONNECTORS = 0;
+    config.CONNECTS_SPHERES = config.CONNECTS_GLASS = config.CONNECTS_PLANES = 0;
     config.ENVIRONMENT = CLR_ENVIRONMENT_NONE;
     config.STRATEGY = CLR_STRATEGY_MIS;
     config.LIGHT_COUNT = config.HAS_AREA_EMITTERS = config.SHADOW_FREE_COUNT = 0;
