@@ -163,7 +163,7 @@ void flatten_quadrics(Flattening &work) {
         flat.shape_of.push_back(append_shape(shape, work));
         const PlacedQuadric placed = placed_quadric(shape, flat.placement);
         const bool inverted =
-            shape.kind == ShapeKind::disk ? shape.flip_normals : is_inverted(shape);
+            shape.kind == ShapeKind::ellipsoid ? is_inverted(shape) : shape.flip_normals;
         flat.quadrics.push_back(make_quadric(placed, inverted));
         flat.bvh_quadrics.push_back(make_bvh_quadric(placed, flat.quadrics.back(), id));
         work.primitive_of_shape[static_cast<int>(i)] = first + id;

@@ -81,7 +81,7 @@ void SceneReader::read_instance(int object) {
         // A sphere that is mirrored by its own transform turns inside out, one by that of its
         // instance does not.
         const bool mirrors = glm::determinant(glm::dmat3(to_world)) < 0;
-        if (copy.kind != ShapeKind::disk && mirrors)
+        if ((copy.kind == ShapeKind::sphere || copy.kind == ShapeKind::ellipsoid) && mirrors)
             copy.flip_normals = !copy.flip_normals;
         copy.to_world = to_world * copy.to_world;
         if (copy.kind == ShapeKind::sphere && !is_similarity(glm::dmat3(copy.to_world)))

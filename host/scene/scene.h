@@ -37,10 +37,10 @@ struct Texture {
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
     std::optional<TextureWrap> wrap_v; ///< along v, if it is another
-    Rgb color0{0.4}, color1{0.2}; ///< checkerboard
-    std::string attribute;        ///< attribute: its name, as MeshAttribute has it
-    Rgb scale{1};                 ///< attribute, bitmap: what its values are multiplied with
-    std::string product;          ///< attribute, bitmap: a second factor, an attribute's name
+    Rgb color0{0.4}, color1{0.2};      ///< checkerboard
+    std::string attribute;             ///< attribute: its name, as MeshAttribute has it
+    Rgb scale{1};                      ///< attribute, bitmap: what its values are multiplied with
+    std::string product;               ///< attribute, bitmap: a second factor, an attribute's name
     std::string coordinates;      ///< bitmap: the attribute that is looked up in place of (u, v)
     std::optional<double> cutoff; ///< numbers: 1 from here on, 0 below
     glm::dmat3 to_uv{1.0};
@@ -76,10 +76,10 @@ enum class ShapeKind { sphere, ellipsoid, cylinder, rectangle, disk, mesh };
 /// ellipsoid where to_world is no similarity), the cylinder x^2 + y^2 = 1, 0 <= z <= 1, with no
 /// caps. A cube is read as a mesh. World normals: rectangle, disk and vertex normals go through the
 /// inverse transpose of to_world, also if it mirrors; a mesh without vertex normals takes them from
-/// the order of its transformed vertices (mirrored, it turns inside out); those of spheres,
-/// ellipsoids and cylinders point outwards, or inwards if to_world mirrors. Then flip_normals turns
-/// shading and geometric normals over. An area light shines, and the front of a BSDF lies, where
-/// the shading normal points.
+/// the order of its transformed vertices (mirrored, it turns inside out); those of cylinders point
+/// outwards, those of spheres and ellipsoids too, or inwards if to_world mirrors. Then flip_normals
+/// turns shading and geometric normals over. An area light shines, and the front of a BSDF lies,
+/// where the shading normal points.
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
     glm::dmat4 to_world{1.0};

@@ -228,9 +228,13 @@ TEST_CASE("filters and wrap modes of old bitmaps", "[dialect]") {
     CHECK(texture_in(same).format.raw);
     CHECK(texture_in(load_old(bitmap("<string name='wrapMode' value='mirror'/>"))).wrap ==
           TextureWrap::mirror);
-    CHECK_FALSE(error_of_version("0.6.0", bitmap("<string name='wrapModeU' value='clamp'/><string "
-                                                 "name='wrapModeV' value='repeat'/>"))
-                    .empty());
+    CHECK(
+        has(error_of_version("0.6.0", bitmap("\n<string name='wrapModeU' value='clamp'/>\n<string "
+                                             "name='wrapModeV' value='repeat'/>")),
+            "scene.xml:4: \"wrap_mode_v\" is \"repeat\", \"wrap_mode_u\" \"clamp\", expected one "
+            "wrap mode for both"));
+    CHECK(has(error_of_version("0.6.0", bitmap("\n<string name='wrapModeV' value='clamp'/>")),
+              "scene.xml:3: \"wrap_mode_v\" is \"clamp\", \"wrap_mode_u\" \"repeat\""));
     CHECK(has(load_version("0.6.0", bitmap("<float name='gamma' value='1.8'/>")).said,
               "\"gamma\" is left out"));
     CHECK(load_version("0.6.0", bitmap("<float name='gamma' value='-1'/>")).said.find("gamma") ==

@@ -212,3 +212,33 @@ TEST_CASE("what does not change the picture is told where all is asked for", "[m
         CHECK(has(said, "s.xml:3: \"block_size\" of integrator \"path\"") == all);
     }
 }
+
+TEST_CASE("what a scene has beside what is rendered is told with its line", "[messages]") {
+    const auto said = [](const std::string &content) {
+        return test::stderr_of([&] { (void)test::load_text(content); });
+    };
+    CHECK(has(said("<bsdf type='hair' id='unused'/>"),
+              "scene.xml:2: warning: bsdf \"hair\" is not supported"));
+    CHECK(has(said("<bsdf type='hair' id='unused'/>"), "(no shape uses it)"));
+    CHECK_FALSE(has(said("<bsdf type='hair' id='unused'/>"), "clrender: warning: "));
+    CHECK(has(said("<medium type='homogeneous' id='fog'/>"),
+              "scene.xml:2: warning: medium \"homogeneous\" is ignored: nothing uses it"));
+
+    const test::ScratchFolder folder;
+    const std::string path =
+        folder.file("scene.xml", "<scene version='3.0.0'>\n<sensor type='perspective'/>\n"
+                                 "<sensor type='irradiancemeter'/>\n<sensor type='thinlens'>\n"
+                                 "<float name='apertur' value='1'/></sensor>\n</scene>\n");
+    const std::string all = test::error_of([&] { (void)load_scene(path, {.all_faults = true}); });
+    CHECK(has(all, "scene.xml:3: sensor \"irradiancemeter\" is not supported"));
+    CHECK(has(all, "scene.xml:4: sensor \"thinlens\""));
+    CHECK(test::error_of([&] { (void)load_scene(path); }).empty());
+}
+
+TEST_CASE("elements without what they need are told what that is", "[messages]") {
+    CHECK(error_of_text("<shape type='sphere'><bsdf type='diffuse'>\n<srgb name='reflectance'/>"
+                        "</bsdf></shape>") ==
+          "3: <srgb> has no value, expected \"#rrggbb\" or 3 numbers or 1");
+    CHECK(has(error_of_text("<shape type='sphere'>\n<subsurface type='dipole'/></shape>"),
+              "subsurface \"dipole\" in shape \"sphere\" is not supported"));
+}

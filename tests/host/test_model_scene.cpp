@@ -89,6 +89,14 @@ TEST_CASE("MTL gloss, roughness, holes and maps become BSDFs around each other",
         return nested(std::get<TwosidedBsdf>(both).front);
     };
 
+    const std::string held =
+        test::stderr_of([&] { (void)load("Kd 1.5 .5 -1\nKs .2 .2 .2\nNs 98\n"); });
+    CHECK(held.find("material \"a\": its colour 1.5 0.5 -1 is held to 0 to 1") !=
+          std::string::npos);
+    const std::string fine =
+        test::stderr_of([&] { (void)load("Kd 1 .5 0\nKs .2 .2 .2\nNs 98\n"); });
+    CHECK(fine.find("is held to") == std::string::npos);
+
     const auto gloss = std::get<RoughPlasticBsdf>(front(load("Kd .5 .5 .5\nKs .5 .5 .5\nNs 98\n")));
     CHECK(gloss.alpha == Approx(std::sqrt(0.02)));
     const double eta = gloss.plastic.ior.interior;

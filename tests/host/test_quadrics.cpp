@@ -112,8 +112,8 @@ TEST_CASE("instances of spheres and cylinders are those of their transforms", "[
         CHECK(copy.kind == plain.kind);
         for (int i = 0; i < 4; ++i)
             CHECK(glm::length(copy.to_world[i] - plain.to_world[i]) < 1e-12);
-        // The transform mirrors: a shape of its own turns inside out by it, an instance does not.
-        CHECK(copy.flip_normals == (plain.kind != ShapeKind::disk));
+        // The transform mirrors: a sphere of its own turns inside out by it, an instance does not.
+        CHECK(copy.flip_normals == (plain.kind == ShapeKind::ellipsoid));
         CHECK_FALSE(plain.flip_normals);
     }
 }

@@ -143,7 +143,14 @@ TEST_CASE("what is wrong with a serialized mesh is told", "[serialized]") {
 TEST_CASE("the dictionary of serialized meshes is checked", "[serialized]") {
     const std::string good = file_of({{}, {}});
     CHECK(error(good, 1).empty());
-    CHECK_THAT(error(good, 2), Catch::Contains("\"shape_index\" from 0 to 1"));
+    CHECK_THAT(error(good, 2), Catch::Contains("\"shape_index\" is 2, but ") &&
+                                   Catch::Contains(" has 2 meshes, expected a number from 0 to 1"));
+    // The line of the scene that asks for it.
+    const test::ScratchFolder folder;
+    const std::string file = folder.file("two.serialized", good);
+    CHECK(test::error_of([&] {
+              (void)read_serialized_mesh(file, {.shape_index = 2}, {"scene.xml", 7});
+          }).starts_with("scene.xml:7: \"shape_index\" is 2, but "));
     const auto with_count = [&](std::uint32_t count) {
         return good.substr(0, good.size() - 4) + bytes_of(count);
     };

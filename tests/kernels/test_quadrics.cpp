@@ -53,13 +53,17 @@ struct Truth {
     [[nodiscard]] double unit(const glm::dvec3 &from) const {
         return rounding * (glm::length(from) + glm::length(origin) + size());
     }
+    /// Whether the normal points inwards, of a disk along -z.
+    [[nodiscard]] bool inwards() const {
+        return (kind == ShapeKind::ellipsoid && glm::determinant(axes) < 0 ? -flip : flip) < 0;
+    }
     /// The unit normal where the surface is at `own`.
     [[nodiscard]] glm::dvec3 normal(glm::dvec3 own) const {
         if (kind == ShapeKind::cylinder)
             own.z = 0;
         if (kind == ShapeKind::disk)
             own = {0, 0, 1};
-        const double sign = kind != ShapeKind::disk && glm::determinant(axes) < 0 ? -flip : flip;
+        const double sign = inwards() ? -1 : 1;
         return sign * glm::normalize(glm::transpose(inverse) * own);
     }
     [[nodiscard]] glm::dvec2 uv(const glm::dvec3 &own) const {
@@ -376,8 +380,7 @@ void check_light_samples(ShapeKind kind) {
     int compared = 0, met = 0;
     for (std::size_t k = 0; k < shapes.truth.size(); ++k) {
         const Truth &truth = shapes.truth[k];
-        const bool inwards = (glm::determinant(truth.axes) < 0 ? -1 : 1) * truth.flip < 0;
-        if (kind == ShapeKind::ellipsoid && inwards)
+        if (kind == ShapeKind::ellipsoid && truth.inwards())
             continue; // never sampled
         const glm::vec3 from(truth.origin +
                              direction(random) * truth.size() * uniform(random, 0.6, 3));

@@ -267,6 +267,32 @@ TEST_CASE("what lets light pass, and blends and masks of it, are lossless under 
     check_constant(picture.mean, 1, 1e-5);
 }
 
+// Behind a surface that lets light pass straight, hide_emitters hides a sky of 1 as from the camera
+// itself. What such a surface reflects shows it: a sheet of glass R = 2 r / (1 + r), r being
+// Fresnel's reflectance of one side straight on, .04 for an index of 1.5.
+TEST_CASE("hide_emitters hides a sky behind passages") {
+    const std::string xml =
+        R"(<integrator type="path"><integer name="max_depth" value="6"/>
+           <boolean name="hide_emitters" value="true"/></integrator>)" +
+        camera("0 0 5", "0 0 0", "0 1 0", 4) +
+        R"(<shape type="rectangle"><transform name="to_world"><translate x="-1"/></transform>
+           <bsdf type="null"/></shape>
+           <shape type="rectangle"><transform name="to_world"><translate x="1"/></transform>
+           <bsdf type="thindielectric"><float name="int_ior" value="1.5"/>
+           <float name="ext_ior" value="1"/></bsdf></shape>
+           <emitter type="constant"><rgb name="radiance" value="1"/></emitter>)";
+    const Image image = render_measured(scene_from_xml(xml), {.spp = 256}).mean;
+    double hidden = 0, reflected = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size / 2; ++x) {
+            hidden += std::abs(value_at(image, x, y));
+            reflected += value_at(image, size / 2 + x, y) / (size * size / 2);
+        }
+    constexpr double share = 0.08 / 1.04;
+    CHECK(hidden == 0);
+    CHECK(reflected == Approx(share).margin(4 * std::sqrt(share / (256 * size * size / 2))));
+}
+
 // Without a sky alpha is the share of paths that meet something: the opacity a of a mask, and
 // behind a mask of another one 1 - (1 - a)^2.
 TEST_CASE("alpha is what masks stop") {
