@@ -25,6 +25,7 @@ VARIANTS = {
     "1 light sample": ["--light-samples", 1],
     "2 light samples": ["--light-samples", 2],
     "4 light samples": ["--light-samples", 4],
+    "no specular connections": ["--specular-connections", "off"],
     "light sampling alone": ["--strategy", "light"],
     "BSDF sampling alone": ["--strategy", "bsdf"],
     "no roulette": ["--rr-depth", 1000000],

@@ -16,6 +16,7 @@
 #include "log.h"
 #include "memory_limit.h"
 #include "print.h"
+#include "render/inner_pictures.h"
 #include "render/profile.h"
 #include "render/profile_trace.h"
 #include "render/render.h"
@@ -32,6 +33,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -92,6 +94,8 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.target_error = options.stop.error.value_or(0);
     r.with_variance = options.layers.count("variance") != 0 || options.stop.error;
     r.with_samples = options.layers.count("samples") != 0;
+    r.layers.aovs = options.aovs;
+    r.layers.matte = options.layers.count("cryptomatte") != 0;
     r.profile = options.profile ? &profile : nullptr;
     r.band_rows = options.band_rows;
     r.preview = options.preview;
@@ -128,12 +132,21 @@ void check_outputs(const cli::Options &options, const Scene &scene) {
 /// as bytes. A stopped render is written fast.
 void write_pictures(const cli::Options &options, const std::string &scene,
                     const RenderResult &result, cli::Outputs &outputs) {
-    const auto about = metadata(options, scene, result.stats);
+    auto about = metadata(options, scene, result.stats);
+    about.insert(result.layer_metadata.begin(), result.layer_metadata.end());
     std::vector<ImageLayer> layers;
     if (options.layers.count("variance") != 0)
         layers.push_back({"variance", &result.variance});
     if (options.layers.count("samples") != 0)
         layers.push_back({"samples", &result.samples});
+    std::set<std::string> channels;
+    for (const NamedLayer &layer : result.layers) {
+        if (channels.insert(layer.channels.front()).second)
+            layers.push_back({"", &layer.image, layer.channels});
+        else
+            log::warn("the layer with the channel " + layer.channels.front() +
+                      " is left out: the scene has one of that name");
+    }
     const bool is_large = std::int64_t{result.image.width} * result.image.height > 1 << 24;
     std::vector<std::future<void>> writes;
     for (const std::string &path : options.outputs)
@@ -232,7 +245,7 @@ int render_command(const cli::Options &options,
     }
 
     const std::string name = scene.name;
-    RenderResult result = render_scene(std::move(scene), how);
+    RenderResult result = render_with_inner_pictures(std::move(scene), how);
     // Beside a large picture it would be most of the memory.
     if (options.layers.count("variance") == 0)
         result.variance = Image();
@@ -272,6 +285,7 @@ int test_command(const cli::Options &options) {
     Scene scene = load_scene(options.scene, {options.defines, options.sensor});
     apply_options(options, scene);
     scene.sample_count = options.spp.value_or(cli::default_test_samples);
+    scene.layers = {}; // the picture alone is tested
     check_outputs(options, scene);
     const std::string name = scene.name;
     cli::Progress progress(!options.quiet);

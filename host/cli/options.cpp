@@ -16,6 +16,8 @@
 #include <filesystem>
 #include <fmt/core.h>
 #include <limits>
+#include <map>
+#include <optional>
 #include <set>
 #include <unistd.h>
 
@@ -115,8 +117,20 @@ std::optional<std::uint64_t> parse_size(const std::string &text) {
 
 /// The layers that --aov knows.
 const std::vector<std::string> &known_layers() {
-    static const std::vector<std::string> names = {"variance", "samples"};
+    static const std::vector<std::string> names = {
+        "variance",   "samples", "albedo", "normal",      "depth",      "position",   "uv",
+        "geo_normal", "dp_du",   "dp_dv",  "shape_index", "prim_index", "cryptomatte"};
     return names;
+}
+
+/// What a layer tells of the camera's first hits, if it does.
+std::optional<Aov> aov_of(const std::string &layer) {
+    static const std::map<std::string, AovType> special = {{"albedo", AovType::reflectance},
+                                                           {"normal", AovType::sh_normal},
+                                                           {"depth", AovType::camera_depth}};
+    const auto found = special.find(layer);
+    const auto type = found != special.end() ? found->second : aov_type_of(layer);
+    return type ? std::optional<Aov>({layer, *type}) : std::nullopt;
 }
 
 std::string check_layer(const std::string &text) {
@@ -264,7 +278,8 @@ void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
         ->check(number(-100, 100))
         ->group("Pictures");
     app.add_option("--aov", raw.layers,
-                   "Layers of .exr files beside the picture, comma-separated: variance, samples")
+                   "Layers of .exr files beside the picture, comma-separated: " +
+                       CLI::detail::join(known_layers(), ", "))
         ->type_name("LAYER")
         ->delimiter(',')
         ->allow_extra_args(false)
@@ -499,6 +514,9 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.test.marked.empty())
         options.test.marked = fs::path(options.test.reference).stem().string() + "_differs.png";
     options.layers.insert(raw.layers.begin(), raw.layers.end());
+    for (const std::string &layer : options.layers)
+        if (const auto aov = aov_of(layer))
+            options.aovs.push_back(*aov);
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);

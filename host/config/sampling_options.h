@@ -19,6 +19,7 @@ struct SamplingOptions {
     bool independent_sampler = false; ///< in place of Sobol' points
     Strategy strategy = Strategy::mis;
     bool specular_connections = true; ///< light sampling over mirrors and through balls of glass
+    bool first_hits = false; ///< layers want to know what camera rays meet (FlatScene::hits)
     int light_samples = 0; ///< where a path first meets a diffuse surface: a power of 2; 0: chosen
     ForcedFeatures forced_features; ///< what the kernel is to be able to do beyond the scene
 };

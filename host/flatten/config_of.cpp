@@ -40,7 +40,8 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     config.HAS_BVH_SPHERES = flat.has_bvh_spheres() ? 1 : 0;
     config.HAS_QUADRICS = flat.quadrics.empty() ? 0 : 1;
     config.HAS_INSTANCES = flat.instances.empty() ? 0 : 1;
-    config.BRUTE_FORCE = flat.has_hierarchy() && sampling.brute_force && flat.groups.empty() ? 1 : 0;
+    config.BRUTE_FORCE =
+        flat.has_hierarchy() && sampling.brute_force && flat.groups.empty() ? 1 : 0;
     config.HAS_VERTEX_NORMALS = flat.normals.empty() ? 0 : 1;
     config.HAS_UVS = flat.needs_uvs() ? 1 : 0;
     config.RECORD_TABLE = flat.lane_wise_count() <= CLR_TABLE_SIZE ? 1 : 0;

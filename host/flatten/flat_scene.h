@@ -4,6 +4,7 @@
 
 #include "bvh_builder.h"
 #include "config/sampling_options.h"
+#include "film/hit_table.h"
 #include "scene/scene.h"
 #include "shared/bsdf_parameters.h"
 #include "shared/instance.h"
@@ -57,6 +58,7 @@ struct SceneFacts {
     bool has_alpha = false;
     bool has_clip = false;
     bool far_camera = false;
+    double unstated_near = 0; ///< depth of Mitsuba's near clip plane, where near_clip has none
 };
 
 /// Its arrays are those of scene_buffers.def, which says what each holds.
@@ -69,6 +71,7 @@ struct FlatScene {
 #undef CLR_BUFFER_ARRAY
     SceneFacts facts;
     std::size_t triangle_count = 0;
+    HitTable hits; ///< where SamplingOptions::first_hits asks for it
     /// What build_hierarchy() makes the tree of.
     std::vector<TriangleCorners> corners;
     std::vector<BvhSphere> bvh_spheres;

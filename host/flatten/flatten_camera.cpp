@@ -211,6 +211,11 @@ void flatten_camera(Flattening &work) {
     const double near = near_clip * rays.near_scale;
     const double far =
         near + sensor.far_clip.value_or(std::numeric_limits<double>::infinity()) - near_clip;
+    flat.facts.unstated_near = depth || sensor.near_clip ? 0 : depth_near_clip * rays.near_scale;
+    flat.hits.center = flat.placement.center;
+    flat.hits.scale = unit;
+    flat.hits.eye = glm::dvec3(sensor.to_world[3]);
+    flat.hits.axis = rays.axis;
     f.near_clip = static_cast<clr_real>(unit * std::max(near - start, 0.0));
     f.far_clip = static_cast<clr_real>(unit * (far - start));
     f.skipped_depth = static_cast<clr_real>(unit * std::max(start - near, 0.0));

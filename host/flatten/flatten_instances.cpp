@@ -70,6 +70,9 @@ void flatten_instances(Flattening &work) {
         if (number_of[static_cast<std::size_t>(scene.instances[i].group)] != CLR_NONE)
             shown.push_back(i);
     flat.instances.resize(shown.size());
+    if (work.options.first_hits)
+        for (const std::size_t i : shown)
+            flat.hits.instance_objects.push_back(scene.instances[i].object);
     tbb::parallel_for(std::size_t(0), shown.size(), [&](std::size_t i) {
         const ShapeInstance &instance = scene.instances[shown[i]];
         const uint number = number_of[static_cast<std::size_t>(instance.group)];

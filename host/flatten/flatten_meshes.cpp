@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -125,12 +126,16 @@ void append_mesh(const Shape &shape, const Mesh &mesh, const Placement &placemen
                 if (wanted.any())
                     flat.triangles.push_back(placed.first_vertex + vertex);
         }
-        if (!shape.attribute_textures.empty())
+        if (!shape.attribute_textures.empty() || work.options.first_hits)
             placed.sources.resize(flat.corners.size() - placed.first_triangle, i);
     }
     flat.shape_of.resize(flat.corners.size(), placed.shape);
     append_vertex_data(shape, mesh, placed.added, wanted, flat);
     append_attributes(shape, placed, work);
+    if (placed.sources.size() == mesh.triangles.size())
+        placed.sources.clear(); // none was split
+    note_hits(shape, flat.lane_wise_count() + placed.first_triangle, std::move(placed.sources),
+              work);
     work.vertex_count += positions.size() + placed.added.size();
 }
 

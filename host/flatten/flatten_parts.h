@@ -44,7 +44,9 @@ struct Flattening {
         return scene.integrator.kind == IntegratorKind::path && scene.integrator.max_depth == 0;
     }
     /// Whether surfaces need coordinates; asked when all textures are flattened.
-    [[nodiscard]] bool needs_uvs() const { return flat.needs_uvs() || wants("HAS_UVS"); }
+    [[nodiscard]] bool needs_uvs() const {
+        return flat.needs_uvs() || wants("HAS_UVS") || options.first_hits;
+    }
 };
 
 /// Where the scene is put: the origin is the median of the places of its shapes, weighted by the

@@ -88,6 +88,7 @@ void flatten_bvh_spheres(Flattening &work) {
             continue;
         const auto id = static_cast<uint>(flat.shape_of.size());
         flat.shape_of.push_back(append_shape(shape, work));
+        note_hits(shape, flat.lane_wise_count() + id, {}, work);
         const Sphere s = flatten_sphere(shape, flat.placement);
         flat.spheres.push_back(s);
         flat.bvh_spheres.push_back(

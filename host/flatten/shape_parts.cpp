@@ -1,5 +1,7 @@
 #include "shape_parts.h"
 
+#include <utility>
+
 namespace clrender::inline CLR_PRECISION {
 
 namespace {
@@ -61,10 +63,19 @@ uint append_shape(const Shape &shape, Flattening &work) {
     return static_cast<uint>(flat.shapes.size() - 1);
 }
 
+void note_hits(const Shape &shape, std::size_t first, std::vector<std::uint32_t> faces,
+               Flattening &work) {
+    if (work.options.first_hits)
+        work.flat.hits.ranges.push_back({static_cast<std::uint32_t>(first), shape.object,
+                                         shape.bsdf, shape.kind == ShapeKind::rectangle,
+                                         std::move(faces)});
+}
+
 void append_lane_wise_shape(std::size_t shape, Flattening &work) {
     const int index = static_cast<int>(shape);
     work.primitive_of_shape[index] = append_shape(work.scene.shapes[shape], work);
     work.lane_wise_shapes.push_back(index);
+    note_hits(work.scene.shapes[shape], work.primitive_of_shape[index], {}, work);
 }
 
 void append_no_shape(Flattening &work) {

@@ -54,6 +54,9 @@ struct PlacedMesh {
 /// Appends the attributes of a mesh that its shape shows.
 void append_attributes(const Shape &shape, const PlacedMesh &placed, Flattening &work);
 
+/// Notes whose the primitives from `first` on are, where layers ask for it.
+void note_hits(const Shape &shape, std::size_t first, std::vector<std::uint32_t> faces,
+               Flattening &work);
 /// The shape's entry among the shape infos, with the frame that spheres need for their (u, v).
 uint append_shape(const Shape &shape, Flattening &work);
 /// The same of the next lane-wise primitive, which has the number of its entry.

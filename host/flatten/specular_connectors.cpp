@@ -152,8 +152,8 @@ void add_plane(const FlatScene &flat, std::size_t prim, bool back, const Connect
 void flatten_specular_connectors(Flattening &work) {
     FlatScene &flat = work.flat;
     constexpr int least_edges = 3; // to the vertex, to the specular surface, to the light
-    if (!work.options.specular_connections || flat.facts.shows_depth || flat.facts.strategy == Strategy::bsdf ||
-        flat.frame.max_depth < least_edges)
+    if (!work.options.specular_connections || flat.facts.shows_depth ||
+        flat.facts.strategy == Strategy::bsdf || flat.frame.max_depth < least_edges)
         return;
     std::vector<SpecularConnector> &all = flat.specular_connectors;
     const auto spheres = static_cast<std::size_t>(flat.facts.sphere_count);
@@ -167,9 +167,8 @@ void flatten_specular_connectors(Flattening &work) {
                 if (flat.shapes[prim].emitter == CLR_NONE)
                     add_plane(flat, prim, back, light, all);
     }
-    std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
-        return a.weight > b.weight;
-    });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto &a, const auto &b) { return a.weight > b.weight; });
     all.resize(std::min(all.size(), most_connectors));
 }
 

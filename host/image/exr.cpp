@@ -224,7 +224,8 @@ void encode_exr(const Image &image, const std::map<std::string, std::string> &me
     for (const ImageLayer &layer : layers) {
         if (layer.image->width != image.width || layer.image->height != image.height)
             throw FormatError("layer " + layer.name + " has another size than the image");
-        const auto names = channel_names(layer.name, *layer.image);
+        const auto names =
+            layer.channels.empty() ? channel_names(layer.name, *layer.image) : layer.channels;
         for (std::size_t c = 0; c < names.size(); ++c) {
             header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
             buffer.insert(names[c], slice(layer.image->f32.data(), header.dataWindow(),

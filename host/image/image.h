@@ -48,7 +48,8 @@ Image decode_image(std::string_view bytes, const std::string &name,
 /// R G B [A], X Y Z [A] or Y [A]), else the layer prefix ("variance" gives variance.R ...).
 struct ImageLayer {
     std::string name;
-    const Image *image = nullptr; ///< f32, all layers of the same size
+    const Image *image = nullptr;        ///< f32, all layers of the same size
+    std::vector<std::string> channels{}; ///< their whole names, where they are others
 };
 
 /// Writes `image` (linear f32) by the extension of `path`: .png .jpg (sRGB, clamped, multiplied by

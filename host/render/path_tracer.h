@@ -80,6 +80,10 @@ public:
     [[nodiscard]] double paths() const { return paths_done_; }
     /// Whether the picture is rendered in one band.
     [[nodiscard]] bool in_one_piece() const { return bands_.size() == 1; }
+    [[nodiscard]] const cl::Context &context() const { return context_; }
+    [[nodiscard]] const cl::CommandQueue &queue() const { return queue_; }
+    /// After upload().
+    [[nodiscard]] const DeviceScene &scene() const { return *scene_; }
     [[nodiscard]] const ControlLayout &control_layout() const { return control_; }
     /// The control tiles of the picture as it stands.
     [[nodiscard]] std::vector<ControlPixel> read_control() const { return film_->read_control(); }

@@ -4,6 +4,7 @@
 #include "film/trim.h"
 #include "flatten/config_of.h"
 #include "flatten/flat_scene.h"
+#include "layer_passes.h"
 #include "log.h"
 #include "memory_need.h"
 #include "path_tracer.h"
@@ -144,6 +145,8 @@ private:
     KernelConfig config_;
     RenderStats stats_;
     std::unique_ptr<PathTracer> tracer_;
+    std::unique_ptr<LayerPasses> layers_; ///< where layers are wanted
+    RenderResult layer_result_;           ///< of these
     std::unique_ptr<Picture> picture_;
     std::optional<StoppingRule> rule_; ///< where samples alone do not end the render
     const std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
@@ -161,7 +164,11 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     stats_.seconds_device = watch_.lap("open the device");
     report_to(options);
     const PixelFormat format = format_ = scene.film.pixel_format;
+    const std::size_t values = values_of(format, options_) + layer_values(scene, options_);
+    options_.sampling.first_hits = wants_layers(scene, options_);
     flat_ = flatten(scene, options_.sampling);
+    if (options_.sampling.first_hits)
+        layers_ = std::make_unique<LayerPasses>(scene, flat_, options_, spp_);
     scene = {};
     config_ = configure(flat_, entry_, options_);
     set_frame();
@@ -171,13 +178,14 @@ Rendering::Rendering(Scene &&scene, const RenderOptions &options)
     tracer_->start_compiling();
     if (options_.write_checkpoint)
         tracer_->on_checkpoint(options_.checkpoint_due, [this] { write_checkpoint(); });
+    if (layers_)
+        layers_->start_compiling(tracer_->context(), tracer_->queue(), entry_, config_);
     build_hierarchy(flat_);
     stats_.host_bytes = flat_.bytes();
     stats_.seconds_build = watch_.lap("build");
     tracer_->compile(stats_);
     stats_.seconds_compile = watch_.lap("compile");
-    check_memory_need(need_of(flat_, config_, entry_, options_, values_of(format, options_), false),
-                      entry_);
+    check_memory_need(need_of(flat_, config_, entry_, options_, values, false), entry_);
     tracer_->upload(stats_);
     stats_.seconds_upload = watch_.lap("upload");
     picture_ =
@@ -225,6 +233,12 @@ void Rendering::report_to(const RenderOptions &options) {
 }
 
 void Rendering::render_all() {
+    // First, since they take little: a render that is stopped has them.
+    if (layers_) {
+        layers_->run(tracer_->scene(), flat_, layer_result_);
+        layers_.reset();
+        watch_.lap("layers");
+    }
     const bool is_timed = options_.deadline != std::chrono::steady_clock::time_point{};
     render_start_ = now();
     if (is_timed || options_.target_error > 0 || options_.write_checkpoint || options_.resumed) {
@@ -348,7 +362,7 @@ RenderResult Rendering::read() {
 }
 
 RenderResult Rendering::result_of(Picture &&picture) {
-    RenderResult result;
+    RenderResult result = std::move(layer_result_);
     result.interrupted = stopped_;
     if (rule_)
         result.ended_by = rule_->reason();
@@ -399,9 +413,12 @@ DeviceEntry device_or_large_cpu(const std::string &spec) {
 
 MemoryNeed memory_at_precision(Scene &&scene, const RenderOptions &options) {
     const DeviceEntry entry = device_or_large_cpu(options.device);
-    FlatScene flat = flatten(scene, options.sampling);
+    SamplingOptions sampling = options.sampling;
+    sampling.first_hits = wants_layers(scene, options);
+    FlatScene flat = flatten(scene, sampling);
     const KernelConfig config = configure(flat, entry, options);
-    const std::size_t values = values_of(scene.film.pixel_format, options);
+    const std::size_t values =
+        values_of(scene.film.pixel_format, options) + layer_values(scene, options);
     scene = {};
     build_hierarchy(flat);
     flat.frame.control_group = static_cast<uint>(control_group_of(flat, config));

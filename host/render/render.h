@@ -2,6 +2,7 @@
 /// From a parsed scene to a picture.
 
 #include "config/sampling_options.h"
+#include "film/aov_sums.h"
 #include "film/checkpoint.h"
 #include "film/control.h"
 #include "memory_need.h"
@@ -14,12 +15,19 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 
 namespace clrender {
 
 struct Profile;
+
+/// Layers of first hits beside those that the scene asks for.
+struct LayerOptions {
+    std::vector<Aov> aovs; ///< by pixels, not by the filter
+    bool matte = false;    ///< Cryptomatte
+};
 
 struct RenderOptions {
     int spp = 0; ///< samples a pixel, at most; 0: the scene's
@@ -41,6 +49,7 @@ struct RenderOptions {
     bool preview = false;       ///< a few samples of all pixels first, however fast
     bool with_variance = false; ///< RenderResult::variance and error are wanted
     bool with_samples = false;  ///< RenderResult::samples is wanted
+    LayerOptions layers;
     std::string kernel_dir;     ///< kernel sources in place of the embedded ones
     Profile *profile = nullptr; ///< filled where given, with a kernel that counts
     std::function<void(const RenderProgress &)> on_progress; ///< called after each launch
@@ -96,7 +105,9 @@ struct RenderResult {
     Image image;
     Image variance;
     Image samples;
-    ErrorEstimate error; ///< where the variance is wanted
+    std::vector<NamedLayer> layers; ///< of first hits: the scene's, then those of LayerOptions
+    std::map<std::string, std::string> layer_metadata; ///< what a file has to say of them
+    ErrorEstimate error;                               ///< where the variance is wanted
     RenderStats stats;
     bool interrupted = false;
     StopReason ended_by = StopReason::samples; ///< unless interrupted

@@ -146,6 +146,10 @@ void Dialect::upgrade(pugi::xml_node node, XmlFile &file) const {
             upgrade_tag(step, file);
         return;
     }
+    if (old_tag == "blackbody") {
+        upgrade_blackbody(node, file);
+        return;
+    }
     if (!node.attribute("type")) {
         upgrade_colour(node, file);
         return;

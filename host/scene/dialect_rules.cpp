@@ -27,6 +27,8 @@ std::optional<double> number_of(std::string_view text) {
 
 constexpr const char *eight_bits_said =
     "the film is read as \"hdrfilm\": the picture is rendered linear, and stored as --output says";
+constexpr const char *microfacets_said =
+    "Phong's distribution of microfacets is replaced by Beckmann's, which it resembles";
 constexpr const char *tone_said =
     "the picture is linear, and pictures of 8 bits are encoded as sRGB without exposure";
 
@@ -52,6 +54,7 @@ const TypeRule type_rules[] = {
     {before_2, "bsdf", "bump", "bumpmap", ""},
     {before_2, "emitter", "sky", "sunsky", ""},
     {before_2, "emitter", "sun", "sunsky", ""},
+    {before_2, "texture", "vertexcolors", "mesh_attribute", ""},
     {before_2, "texture", "ldrtexture", "bitmap", ""},
     {before_2, "texture", "exrtexture", "bitmap", ""},
     {all, nullptr, nullptr, nullptr, nullptr},
@@ -76,6 +79,7 @@ const PropertyRule property_rules[] = {
 
 const ValueRule value_rules[] = {
     {all, "texture", any, "filter_type", "ewa trilinear", "bilinear", bilinear_said},
+    {before_2, "bsdf", any, "distribution", "phong as", "beckmann", microfacets_said},
     {all, "film", any, "pixel_format", "luminancealpha", "luminance_alpha", ""},
     {all, "film", any, "pixel_format", "spectrum", "rgb", ""},
     {all, "film", any, "pixel_format", "spectrumalpha", "rgba", ""},
@@ -231,6 +235,8 @@ void upgrade_forms(pugi::xml_node object, const std::string &tag, const std::str
         upgrade_wrap_modes(object, file);
         if (is_listed("bitmap ldrtexture exrtexture", type))
             upgrade_gamma(object, file);
+        else if (type == "vertexcolors")
+            add_value(object, "string", "name", "vertex_color", object, file);
     } else if ((tag == "emitter" || tag == "luminaire") && is_listed("sky sun sunsky", type)) {
         upgrade_sky(object, type, file);
     } else if (tag == "camera") {

@@ -69,4 +69,7 @@ void upgrade_sky(pugi::xml_node emitter, const std::string &type, XmlFile &file)
 /// Makes <srgb>, hexadecimal colours, and spectra of three numbers an <rgb>. Throws InputError.
 void upgrade_colour(pugi::xml_node value, XmlFile &file);
 
+/// Makes <blackbody temperature="5000K"> a <spectrum type="blackbody">.
+void upgrade_blackbody(pugi::xml_node value, XmlFile &file);
+
 } // namespace clrender::mitsuba

@@ -83,4 +83,21 @@ void upgrade_colour(pugi::xml_node value, XmlFile &file) {
         file.rename(value, "rgb");
 }
 
+void upgrade_blackbody(pugi::xml_node value, XmlFile &file) {
+    file.rename(value, "spectrum");
+    value.append_attribute("type").set_value("blackbody");
+    for (const char *name : {"temperature", "scale"}) {
+        const pugi::xml_attribute attribute = value.attribute(name);
+        if (!attribute)
+            continue;
+        std::string number = attribute.value();
+        if (number.ends_with('K') || number.ends_with('k'))
+            number.pop_back();
+        pugi::xml_node property = file.append(value, "float", value);
+        property.append_attribute("name").set_value(name);
+        property.append_attribute("value").set_value(number.c_str());
+        value.remove_attribute(name);
+    }
+}
+
 } // namespace clrender::mitsuba

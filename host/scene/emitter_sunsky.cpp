@@ -3,6 +3,7 @@
 #include "../log.h"
 #include "limits.h"
 #include "mitsuba_scene.h"
+#include "similarity.h"
 
 #include <cmath>
 #include <numbers>

@@ -7,6 +7,7 @@
 #include "gltf_scene.h"
 #include "mitsuba_xml.h"
 #include "model_scene.h"
+#include "object_names.h"
 
 #include <algorithm>
 #include <cctype>
@@ -79,6 +80,7 @@ Scene load_scene(const std::string &path, const LoadOptions &options) {
     Scene scene = read_scene(path, options);
     if (const std::string reason = claim_memory(flat_bytes_estimate(scene)); !reason.empty())
         throw InputError({path, 0}, "the scene " + reason);
+    name_objects(scene);
     warn_of_enclosed_camera(scene);
     return scene;
 }

@@ -114,28 +114,4 @@ void SceneReader::read_other_integrator(Properties &properties, const SameLight 
     warn_of_differences(scene_, properties.where(), other);
 }
 
-/// The picture is that of the first integrator inside.
-void SceneReader::read_layers(Properties &properties) {
-    properties.ignore({"hide_emitters"});
-    const auto nested = properties.children("integrator");
-    const std::string layers = properties.string("aovs").value_or("");
-    if (nested.empty())
-        throw UnsupportedError(properties.where(), properties.description() +
-                                                       " has no nested integrator, expected one: "
-                                                       "layers without a picture are not "
-                                                       "supported");
-    const Object &first = document_.at(nested[0]->object);
-    if (first.type == "aov" || first.type == "moment")
-        throw InputError(properties.where(), properties.description() +
-                                                 " is nested, expected a path integrator inside");
-    if (nested.size() > 1)
-        log::warn(document_.where(properties.object(), nested[1]->line),
-                  properties.description() + " has " + std::to_string(nested.size()) +
-                      " nested integrators: the picture of the first is rendered");
-    log::warn(properties.where(), properties.description() + ": its layers " +
-                                      (layers.empty() ? "" : in_quotes(layers) + " ") +
-                                      "are not written");
-    read_integrator(nested[0]->object);
-}
-
 } // namespace clrender::mitsuba

@@ -80,13 +80,20 @@ void SceneReader::warn_of_missing(Properties &root) const {
 
 void SceneReader::read_shapes(Properties &root) {
     std::set<int> seen; // a <ref> to a shape of the scene adds nothing
-    for (const Child *child : root.children("shape"))
-        if (seen.insert(child->object).second && !attempt([&] { read_shape(child->object); })) {
+    for (const Child *child : root.children("shape")) {
+        if (!seen.insert(child->object).second)
+            continue;
+        const std::size_t shapes = scene_.shapes.size(), instances = scene_.instances.size();
+        if (attempt([&] { read_shape(child->object); })) {
+            number_object(child->object, shapes, instances);
+        } else {
             // The files of what failed belong to no shape.
             while (!shapes_from_files_.empty() && shapes_from_files_.back() >= scene_.shapes.size())
                 shapes_from_files_.pop_back();
             check_children(child->object);
         }
+    }
+    number_meshes();
 }
 
 void SceneReader::read_scene_emitters(Properties &root) {

@@ -37,6 +37,13 @@ private:
     void check_children(int object);
     void read_shapes(Properties &root);
     void read_scene_emitters(Properties &root);
+    // mitsuba_objects.cpp
+    /// Numbers what a shape of the scene has added to the shapes and instances.
+    void number_object(int object, std::size_t first_shape, std::size_t first_instance);
+    /// Those that are meshes, behind all others.
+    void number_meshes();
+    int name_object(int object);
+    // mitsuba_scene.cpp
     void read_files();
     void read_view(Properties &root);
     void read_chosen_sensor(Properties &root);
@@ -52,7 +59,15 @@ private:
     int read_new_texture(int object, SpectrumUse use);
     int read_bitmap(Properties &properties, SpectrumUse use);
     int read_checkerboard(Properties &properties, SpectrumUse use);
+    // texture_channel.cpp
+    std::shared_ptr<const Image>
+    read_channel(Properties &properties, std::shared_ptr<const Image> source, TexelFormat format);
+    // texture_scale.cpp
+    int read_scaled_texture(Properties &properties, SpectrumUse use);
+    // spectrum_objects.cpp
     int read_spectrum_object(Properties &properties, SpectrumUse use);
+    int read_d65(Properties &properties, SpectrumUse use);
+    // mitsuba_textures.cpp
     int read_raw_constant(Properties &properties, SpectrumUse use);
     // mitsuba_attributes.cpp
     int read_mesh_attribute(Properties &properties);
@@ -122,12 +137,18 @@ private:
     void read_film(int object);
     void read_integrator(int object);
     void read_other_integrator(Properties &properties, const SameLight &other);
+    // mitsuba_aov.cpp
     void read_layers(Properties &properties);
 
     const Document &document_;
     bool all_faults_;
     std::optional<int> chosen_sensor_;
     std::vector<std::string> faults_; ///< lines, each once
+    struct NumberedMesh {
+        int object;
+        std::size_t shape;
+    };
+    std::vector<NumberedMesh> meshes_; ///< of the scene, in the file's order
     Scene scene_;
     bool load_images_ = true;  ///< off while objects that no shape uses are checked
     std::map<int, int> bsdfs_; ///< by object
@@ -146,6 +167,18 @@ private:
     std::vector<ReadGroup> read_groups_; ///< as Scene::groups
     std::map<int, int> groups_;          ///< by object
 };
+
+/// Fails where a colour is not what `use` allows; Mitsuba refuses an <rgb> reflectance above 1, but
+/// lets floats and uniform spectra pass, of which a warning tells.
+void check_range(const Properties &properties, const std::string &name, const Rgb &rgb,
+                 SpectrumUse use, bool is_rgb);
+
+/// Linear sRGB of a spectrum; warns where it had to be clamped. `what` is it for the message.
+Rgb colour_of_spectrum(const Spectrum &spectrum, SpectrumUse use, const SourceLocation &where,
+                       const std::string &what);
+
+/// Whether read_spectrum_object() knows the type.
+bool is_spectrum_type(const std::string &type);
 
 /// The metal that a conductor names; it then states neither eta nor k.
 std::optional<ComplexIor> read_metal(Properties &properties);

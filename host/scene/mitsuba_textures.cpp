@@ -14,7 +14,8 @@ namespace clrender::mitsuba {
 namespace {
 
 const std::vector<std::string> texture_types{
-    "bitmap", "checkerboard", "mesh_attribute", "rawconstant", "uniform", "srgb", "d65"};
+    "bitmap", "checkerboard", "mesh_attribute", "rawconstant", "uniform", "srgb",
+    "d65",    "blackbody",    "regular",        "irregular",   "scale"};
 
 bool any_below(const Rgb &rgb, double limit) {
     return rgb.r < limit || rgb.g < limit || rgb.b < limit;
@@ -22,22 +23,6 @@ bool any_below(const Rgb &rgb, double limit) {
 
 bool any_above(const Rgb &rgb, double limit) {
     return rgb.r > limit || rgb.g > limit || rgb.b > limit;
-}
-
-/// Mitsuba refuses an <rgb> reflectance above 1, but lets floats and uniform spectra pass.
-void check_range(const Properties &properties, const std::string &name, const Rgb &rgb,
-                 SpectrumUse use, bool is_rgb) {
-    if (any_below(rgb, 0))
-        properties.fail(name, "is negative, expected no value below 0");
-    if (any_above(rgb, max_radiance))
-        properties.fail(name,
-                        fmt::format("is too large, expected no value above {:g}", max_radiance));
-    if (use != SpectrumUse::reflectance || !any_above(rgb, 1))
-        return;
-    if (is_rgb)
-        properties.fail(name, "is above 1, expected an <rgb> from 0 to 1");
-    log::warn(properties.where(name),
-              in_quotes(name) + " is above 1: the surface gives more light than it gets");
 }
 
 /// The colour of a value, or nothing if it is none.
@@ -51,12 +36,8 @@ std::optional<Rgb> colour_of(const Properties &properties, const Property &prope
     if (const auto *rgb = std::get_if<Colour>(&value))
         return rgb->value;
     if (const auto *spectrum = std::get_if<Spectrum>(&value)) {
-        const SpectrumColour colour = spectrum_to_rgb(*spectrum, use);
-        if (colour.clamped)
-            log::warn(properties.where(property.name),
-                      "spectrum " + in_quotes(property.name) +
-                          " has a colour outside of sRGB, which is clamped");
-        return colour.rgb;
+        return colour_of_spectrum(*spectrum, use, properties.where(property.name),
+                                  "spectrum " + in_quotes(property.name));
     }
     return std::nullopt;
 }
@@ -75,6 +56,29 @@ void make_number(Texture &texture) {
 }
 
 } // namespace
+
+void check_range(const Properties &properties, const std::string &name, const Rgb &rgb,
+                 SpectrumUse use, bool is_rgb) {
+    if (any_below(rgb, 0))
+        properties.fail(name, "is negative, expected no value below 0");
+    if (any_above(rgb, max_radiance))
+        properties.fail(name,
+                        fmt::format("is too large, expected no value above {:g}", max_radiance));
+    if (use != SpectrumUse::reflectance || !any_above(rgb, 1))
+        return;
+    if (is_rgb)
+        properties.fail(name, "is above 1, expected an <rgb> from 0 to 1");
+    log::warn(properties.where(name),
+              in_quotes(name) + " is above 1: the surface gives more light than it gets");
+}
+
+Rgb colour_of_spectrum(const Spectrum &spectrum, SpectrumUse use, const SourceLocation &where,
+                       const std::string &what) {
+    const SpectrumColour colour = spectrum_to_rgb(spectrum, use);
+    if (colour.clamped)
+        log::warn(where, what + " has a colour outside of sRGB, which is clamped");
+    return colour.rgb;
+}
 
 int SceneReader::add_constant(const Rgb &value) {
     Texture texture;
@@ -143,7 +147,9 @@ int SceneReader::read_new_texture(int object, SpectrumUse use) {
         index = read_mesh_attribute(properties);
     else if (type == "rawconstant")
         index = read_raw_constant(properties, use);
-    else if (type == "uniform" || type == "srgb" || type == "d65")
+    else if (type == "scale")
+        index = read_scaled_texture(properties, use);
+    else if (is_spectrum_type(type))
         index = read_spectrum_object(properties, use);
     else
         fail_unsupported(document_, properties.object(), texture_types);
@@ -166,6 +172,10 @@ int SceneReader::read_bitmap(Properties &properties, SpectrumUse use) {
     if (load_images_)
         texture.bitmap = files_.image(path, properties.where("filename"),
                                       {texture.format.raw, use == SpectrumUse::emission});
+    if (load_images_ && properties.has("channel"))
+        texture.bitmap = read_channel(properties, texture.bitmap, texture.format);
+    else
+        properties.find("channel");
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;
 }
@@ -180,20 +190,6 @@ int SceneReader::read_checkerboard(Properties &properties, SpectrumUse use) {
     texture.to_uv = properties.uv_transform("to_uv");
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;
-}
-
-int SceneReader::read_spectrum_object(Properties &properties, SpectrumUse use) {
-    // In RGB mode "uniform" and "d65" are grey, also in lights.
-    const std::string &type = properties.object().type;
-    const std::string needed = type == "srgb" ? "color" : type == "uniform" ? "value" : "";
-    if (!needed.empty() && properties.find(needed) == nullptr)
-        properties.fail(needed, "is missing, expected what the texture shows");
-    if (type == "srgb")
-        return read_colour(properties, "color", use);
-    const std::string name = type == "d65" ? "scale" : "value";
-    const Rgb value(properties.number(name, 1));
-    check_range(properties, name, value, use, false);
-    return add_constant(value);
 }
 
 int SceneReader::read_raw_constant(Properties &properties, SpectrumUse use) {

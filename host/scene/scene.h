@@ -4,6 +4,7 @@
 
 #include "../error.h"
 #include "../image/texels.h"
+#include "aov.h"
 #include "bsdf.h"
 #include "sky_model.h"
 
@@ -87,6 +88,7 @@ struct Shape {
     int bsdf = none;    ///< index; the readers give a default diffuse .5 BSDF to shapes without one
     int emitter = none; ///< index of an area emitter
     std::vector<int> attribute_textures; ///< those that it shows with attributes of its mesh
+    int object = none;                   ///< index into Scene::object_names; in groups none
     std::string id;
     SourceLocation where;
 };
@@ -102,6 +104,7 @@ struct ShapeGroup {
 struct ShapeInstance {
     int group = none; ///< index
     glm::dmat4x3 to_world{1.0};
+    int object = none; ///< index into Scene::object_names
 };
 
 enum class FovAxis { x, y, diagonal, smaller, larger };
@@ -194,6 +197,19 @@ struct Integrator {
     SourceLocation where;
 };
 
+/// A picture that is a layer as well: that of an integrator inside of one for layers.
+struct IntegratorLayer {
+    std::string name;
+    Integrator integrator;
+};
+
+/// What Mitsuba's integrators `aov` and `moment` add to a picture.
+struct SceneLayers {
+    std::vector<Aov> aovs;
+    std::vector<IntegratorLayer> pictures; ///< the first one's is also the scene's picture
+    bool moments = false;                  ///< of XYZ, the first and second ones of `pictures`
+};
+
 struct Scene {
     std::string name; ///< the scene file without folder and extension
     std::vector<Texture> textures;
@@ -201,10 +217,14 @@ struct Scene {
     std::vector<Shape> shapes;
     std::vector<ShapeGroup> groups;
     std::vector<ShapeInstance> instances;
+    /// What shape indices count, in Mitsuba's order: what is no mesh, instances included, as in the
+    /// file, then the meshes from last to first; rectangles are meshes. Ids, or made-up names.
+    std::vector<std::string> object_names;
     std::vector<Emitter> emitters;
     Sensor sensor;
     FilmSettings film;
     Integrator integrator;
+    SceneLayers layers;
     int sample_count = 16; ///< scene files that state none have 4, as in Mitsuba
 };
 

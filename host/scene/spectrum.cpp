@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace clrender {
@@ -174,6 +175,20 @@ Rgb spectral_colour(double wavelength) {
     return wavelength < first_wavelength || wavelength > last_wavelength
                ? Rgb(0)
                : xyz_to_rgb(colour_matching(wavelength));
+}
+
+Spectrum blackbody_spectrum(double kelvins) {
+    constexpr double speed_of_light = 299792458, planck = 6.62607015e-34, boltzmann = 1.380649e-23;
+    constexpr double nanometre = 1e-9;
+    Spectrum spectrum;
+    for (double wavelength = first_wavelength; wavelength <= last_wavelength; ++wavelength) {
+        const double metres = wavelength * nanometre;
+        spectrum.wavelengths.push_back(wavelength);
+        spectrum.values.push_back(
+            2 * planck * speed_of_light * speed_of_light / std::pow(metres, 5) * nanometre /
+            std::expm1(planck * speed_of_light / (metres * boltzmann * kelvins)));
+    }
+    return spectrum;
 }
 
 Rgb uniform_emission(double value) {

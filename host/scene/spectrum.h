@@ -30,8 +30,12 @@ SpectrumColour spectrum_to_rgb(const Spectrum &spectrum, SpectrumUse use);
 /// The luminance of a spectrum of 1, by which colours are divided.
 inline constexpr double unit_spectrum_luminance = 106.7502593994140625;
 
-/// Linear sRGB of the colour matching functions at a wavelength (nm), which are 0 beyond 360 to 830.
+/// Linear sRGB of the colour matching functions at a wavelength (nm), which are 0 beyond 360 to
+/// 830.
 Rgb spectral_colour(double wavelength);
+
+/// The radiance of a black body of that many kelvins, W m^-2 sr^-1 nm^-1, by Planck's law.
+Spectrum blackbody_spectrum(double kelvins);
 
 /// The colour of a light with the same power at every wavelength.
 Rgb uniform_emission(double value);

@@ -17,7 +17,7 @@ constexpr const char *camera = "\"perspective\"";
 
 constexpr const char *sky = "\"sunsky\" for one moment";
 
-constexpr std::array<Unsupported, 65> table{{
+constexpr std::array<Unsupported, 61> table{{
     {"bsdf", "phong", "\"roughplastic\""},
     {"bsdf", "ward", "\"roughconductor\""},
     {"bsdf", "coating", "\"plastic\""},
@@ -64,14 +64,10 @@ constexpr std::array<Unsupported, 65> table{{
     {"subsurface", "dipole", solid},
     {"subsurface", "singlescatter", solid},
     {"texture", "volume", "\"bitmap\""},
-    {"texture", "scale", "the texture inside of it, with its values scaled"},
     {"texture", "gridtexture", "\"checkerboard\""},
     {"texture", "wireframe", "\"checkerboard\""},
     {"texture", "curvature", "\"bitmap\""},
     {"texture", "noise", "\"bitmap\""},
-    {"spectrum", "blackbody", "\"rgb\""},
-    {"spectrum", "irregular", "<spectrum> with wavelength:value pairs"},
-    {"spectrum", "regular", "<spectrum> with wavelength:value pairs"},
     {"film", "specfilm", "\"hdrfilm\""},
     {"integrator", "stokes", "the integrator inside of it"},
     {"integrator", "ao", "\"direct\""},

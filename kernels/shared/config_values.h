@@ -17,6 +17,19 @@
 #define CLR_INTEGRATOR_PATH 0
 #define CLR_INTEGRATOR_DEPTH 1
 
+/* AOVS: what is recorded of the first hits of camera rays, a bit each; see shared/first_hits.h. */
+#define CLR_AOV_DEPTH 1
+#define CLR_AOV_POSITION 2
+#define CLR_AOV_UV 4
+#define CLR_AOV_GEO_NORMAL 8
+#define CLR_AOV_SH_NORMAL 16
+#define CLR_AOV_TANGENTS 32
+#define CLR_AOV_UV_PARTIALS 64
+#define CLR_AOV_ALBEDO 128
+#define CLR_AOV_REFLECTANCE 256
+#define CLR_AOV_PLACE 512
+#define CLR_AOV_PASSES 1024 /* nothing more: hits of what lets light pass straight do not count */
+
 /* STRATEGY: how light is looked for. */
 #define CLR_STRATEGY_MIS 0   /* light and BSDF sampling, by multiple importance sampling */
 #define CLR_STRATEGY_LIGHT 1 /* light sampling alone */

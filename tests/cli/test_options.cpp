@@ -72,6 +72,8 @@ TEST_CASE("Every option of the contract is read") {
                                     "8",
                                     "--strategy",
                                     "bsdf",
+                                    "--specular-connections",
+                                    "off",
                                     "--accel",
                                     "none",
                                     "--check",
@@ -95,6 +97,7 @@ TEST_CASE("Every option of the contract is read") {
     CHECK(options.sampling.pixel_centers);
     CHECK(options.sampling.light_samples == 8);
     CHECK(options.sampling.strategy == clrender::Strategy::bsdf);
+    CHECK_FALSE(options.sampling.specular_connections);
     CHECK(options.sampling.brute_force);
     CHECK(options.check);
     CHECK(options.stats == "s.json");

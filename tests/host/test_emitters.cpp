@@ -122,7 +122,7 @@ TEST_CASE("wrong lights are refused with their place", "[emitters]") {
               .find("has no length") != std::string::npos);
     CHECK(error("projector", "").find("no \"irradiance\"") != std::string::npos);
     CHECK(error("collimated", "").find("small cutoff_angle") != std::string::npos);
-    CHECK(error("sunsky", "").find("whose tables clrender does not have") != std::string::npos);
+    CHECK(error("timed_sunsky", "").find("\"sunsky\" for one moment") != std::string::npos);
     CHECK(error_of_text(R"(<shape type="sphere"><emitter type="spot"/></shape>)")
               .find("inside of a shape") != std::string::npos);
 }

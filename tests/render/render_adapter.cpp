@@ -19,6 +19,7 @@ MeasuredImage render_measured(const Scene &scene, const TestRender &how) {
     options.sampling.independent_sampler = !how.sobol;
     options.sampling.light_samples = how.light_samples;
     options.sampling.strategy = how.strategy;
+    options.sampling.specular_connections = how.specular_connections;
     options.sampling.forced_features = how.forced_features;
     options.batch = how.batch_blocks;
     options.tile = how.tile_items;

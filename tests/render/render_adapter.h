@@ -26,6 +26,7 @@ struct TestRender {
     ForcedFeatures forced_features = {}; ///< as in RenderOptions
     int light_samples = 0;               ///< as in RenderOptions
     Strategy strategy = Strategy::mis;
+    bool specular_connections = true; ///< as in RenderOptions
     bool sobol = false; ///< independent samples, whose variance is what it looks like, if not
 };
 

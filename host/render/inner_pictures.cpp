@@ -1,0 +1,74 @@
+#include "inner_pictures.h"
+
+#include <utility>
+
+namespace clrender {
+
+namespace {
+
+NamedLayer named(const std::string &name, const std::vector<std::string> &suffixes, Image image) {
+    NamedLayer layer;
+    for (const std::string &suffix : suffixes)
+        layer.channels.push_back(name + "." + suffix);
+    layer.image = std::move(image);
+    return layer;
+}
+
+/// The first channels of each pixel.
+Image first_channels(const Image &image, int count) {
+    Image result = image;
+    result.channels = count;
+    result.f32.clear();
+    for (std::size_t i = 0; i < image.f32.size(); i += static_cast<std::size_t>(image.channels))
+        result.f32.insert(result.f32.end(), image.f32.begin() + static_cast<std::ptrdiff_t>(i),
+                          image.f32.begin() + static_cast<std::ptrdiff_t>(i) + count);
+    return result;
+}
+
+} // namespace
+
+RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &options) {
+    if (scene.layers.pictures.empty())
+        return render_scene(std::move(scene), options);
+    const SceneLayers layers = scene.layers;
+    const bool moments = layers.moments;
+    const PixelFormat format = scene.film.pixel_format;
+    const PixelFormat inner_format = moments ? PixelFormat::xyz : PixelFormat::rgba;
+    const std::vector<std::string> suffixes = moments
+                                                  ? std::vector<std::string>{"X", "Y", "Z"}
+                                                  : std::vector<std::string>{"R", "G", "B", "A"};
+
+    // The first one's picture in RGBA holds that in RGB.
+    const bool shares = !moments && (format == PixelFormat::rgb || format == PixelFormat::rgba);
+    std::vector<NamedLayer> pictures;
+    bool interrupted = false;
+    for (std::size_t i = shares ? 1 : 0; i < layers.pictures.size() && !interrupted; ++i) {
+        Scene inner = scene;
+        inner.layers = {};
+        inner.integrator = layers.pictures[i].integrator;
+        inner.film.pixel_format = inner_format;
+        RenderOptions how = options;
+        how.layers = {};
+        how.with_variance = how.with_samples = false;
+        how.profile = nullptr;
+        RenderResult result = render_scene(std::move(inner), how);
+        interrupted = result.interrupted;
+        pictures.push_back(named(layers.pictures[i].name, suffixes, std::move(result.image)));
+    }
+    if (shares)
+        scene.film.pixel_format = PixelFormat::rgba;
+    RenderResult result = render_scene(std::move(scene), options);
+    if (shares)
+        pictures.insert(pictures.begin(),
+                        named(layers.pictures.front().name, suffixes, result.image));
+    if (shares && format == PixelFormat::rgb) {
+        result.image = first_channels(result.image, 3);
+        if (!result.variance.f32.empty())
+            result.variance = first_channels(result.variance, 3);
+    }
+    result.layers.insert(result.layers.begin(), std::make_move_iterator(pictures.begin()),
+                         std::make_move_iterator(pictures.end()));
+    return result;
+}
+
+} // namespace clrender
