@@ -66,7 +66,7 @@ void check_sizes(const Document &document, std::string_view data, std::size_t at
                                                 "Draco data",
                                                 faces, vertices, data.size()));
     // An attribute has at most four numbers for each corner, and is copied twice.
-    const std::uint64_t bytes = faces * (bytes_per_face + 3 * 4 * 3 * sizeof(float) * attributes);
+    const std::uint64_t bytes = faces * (bytes_per_face + sizeof(float) * 3 * 4 * 3 * attributes);
     if (const std::string reason = claim_memory(bytes); !reason.empty())
         throw document.error(place, reason);
 }

@@ -111,7 +111,7 @@ std::shared_ptr<const Image> Images::alpha(int texture) {
 }
 
 std::shared_ptr<const Image> Images::normals(int texture, double scale, bool flips) {
-    const std::shared_ptr<const Image> image = get(texture, true);
+    std::shared_ptr<const Image> image = get(texture, true);
     if (!image || (scale == 1 && !flips))
         return image;
     std::shared_ptr<const Image> &normals = normals_[{source_of(texture), scale, flips}];

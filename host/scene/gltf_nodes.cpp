@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <string>
-#include <utility>
 
 namespace clrender::gltf {
 
@@ -83,8 +83,8 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
     };
     std::vector<Open> open;
     const std::vector<int> roots = roots_of(document);
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-        open.push_back({*root, glm::dmat4(1.0)});
+    for (const int root : std::ranges::reverse_view(roots))
+        open.push_back({root, glm::dmat4(1.0)});
     std::vector<PlacedNode> placed;
     std::vector<bool> seen(document.model.nodes.size(), false);
     while (!open.empty()) {
@@ -96,12 +96,12 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
         if (seen[static_cast<std::size_t>(at.node)])
             throw document.error(place, "is reached twice, expected nodes that are trees");
         seen[static_cast<std::size_t>(at.node)] = true;
-        PlacedNode here{&node, at.node, at.parent * own_matrix(document, node, place)};
+        const PlacedNode here{&node, at.node, at.parent * own_matrix(document, node, place)};
         if (!is_finite(here.to_world))
             throw document.error(place, "its place is not finite, expected numbers up to 1e+30");
-        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-            open.push_back({*child, here.to_world});
-        placed.push_back(std::move(here));
+        for (const int child : std::ranges::reverse_view(node.children))
+            open.push_back({child, here.to_world});
+        placed.push_back(here);
     }
     if (document.has_animations)
         document.warn("animations", "are ignored");
