@@ -13,13 +13,13 @@ namespace {
 /// Where the scene asks for layers they have as many samples as the picture, up to so many; in
 /// Mitsuba they have all.
 constexpr int most_filtered = 64;
-/// Layers of the command line cost little: a quarter of the samples, up to so many.
+/// Layers of the command line cost little: an eighth of the samples, up to so many.
 constexpr int least_samples = 4;
 constexpr int most_boxed = 16;
 constexpr int most_matte = 64;
 
 int share_of(int spp, int most) {
-    return std::min(spp, std::clamp(spp / 4, least_samples, most));
+    return std::min(spp, std::clamp(spp / 8, least_samples, most));
 }
 
 SplatFilter splat_filter(const FlatScene &flat) {

@@ -5,7 +5,8 @@
 
 namespace clrender {
 
-/// Numbers and names the shapes that the reader has not numbered, one after the other.
+/// Numbers and names the shapes and instances that the reader has not numbered, one after the
+/// other.
 void name_objects(Scene &scene);
 
 /// By Scene::bsdfs: their ids, or made-up names.
