@@ -63,13 +63,16 @@ std::optional<SceneOfFaces> cubes_as_faces(const Scene &scene) {
     const auto count = [&](const auto &test) {
         return std::count_if(scene.shapes.begin(), scene.shapes.end(), test);
     };
-    const auto is_mesh = [](const Shape &s) { return s.kind == ShapeKind::mesh; };
-    const auto is_sphere = [](const Shape &s) { return s.kind == ShapeKind::sphere; };
     const auto is_cube = [&](const Shape &s) { return is_cuboid(scene, s); };
+    const auto is_sphere = [](const Shape &s) { return s.kind == ShapeKind::sphere; };
+    const auto is_planar = [](const Shape &s) {
+        return s.kind == ShapeKind::rectangle || s.kind == ShapeKind::disk;
+    };
     const std::ptrdiff_t cubes = count(is_cube), spheres = count(is_sphere);
-    const auto planars = static_cast<std::ptrdiff_t>(scene.shapes.size()) - cubes - spheres;
-    if (cubes == 0 || cubes > few_cubes || count(is_mesh) > cubes || spheres > few_primitives ||
-        planars > few_primitives || !scene.instances.empty())
+    const std::ptrdiff_t planars = count(is_planar);
+    const auto all = static_cast<std::ptrdiff_t>(scene.shapes.size());
+    if (cubes == 0 || cubes > few_cubes || spheres > few_primitives || planars > few_primitives ||
+        cubes + spheres + planars < all || !scene.instances.empty())
         return std::nullopt;
     SceneOfFaces result{scene, {}};
     std::vector<Shape> &shapes = result.scene.shapes;
