@@ -33,6 +33,7 @@ void set_geometry(const FlatScene &flat, const SamplingOptions &sampling, Kernel
     config.LARGE_COUNT = flat.facts.large_count;
     config.HUGE_COUNT = flat.facts.huge_count;
     config.PLANAR_COUNT = static_cast<int>(flat.planars.size());
+    config.CUBOID_COUNT = static_cast<int>(flat.cuboids.size());
     config.SHADOWLESS_PLANAR_COUNT = flat.facts.shadowless_count;
     config.PLANAR_AXES = flat.facts.planar_axes;
     config.HAS_DISKS = any(flat.planars, [](const Planar &p) { return p.is_disk != 0; });

@@ -28,8 +28,12 @@ bool FlatScene::needs_uvs() const {
            });
 }
 
-FlatScene flatten(const Scene &scene, const SamplingOptions &options) {
+FlatScene flatten(const Scene &given, const SamplingOptions &options) {
+    const std::optional<SceneOfFaces> with_faces = cubes_as_faces(given);
+    const Scene &scene = with_faces ? with_faces->scene : given;
     Flattening work{scene, options};
+    if (with_faces)
+        work.cuboids = with_faces->cuboids;
     work.flat.facts.strategy = strategy_of(work);
     for (const Shape &shape : scene.shapes)
         work.boxes.push_back(shape_box(shape));

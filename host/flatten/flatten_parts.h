@@ -1,6 +1,7 @@
 #pragma once
 /// The steps of flatten(), in their order, and what they tell each other.
 
+#include "cuboids.h"
 #include "flat_scene.h"
 #include "scene/shape_bounds.h"
 
@@ -23,6 +24,7 @@ struct Flattening {
     FlatScene flat{};
     std::vector<Box> boxes{};                      ///< by Scene::shapes, in world coordinates
     std::vector<Box> instance_boxes{};             ///< by Scene::instances, likewise
+    std::vector<CuboidFaces> cuboids{};            ///< tested as such, not face by face
     std::map<int, uint> texture_index{};           ///< by Scene::textures
     std::map<std::string, uint> attribute_index{}; ///< by name, of those that shapes show
     std::map<int, uint> sides_of_bsdf{};           ///< by Scene::bsdfs, as ShapeInfo::materials

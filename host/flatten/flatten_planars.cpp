@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace clrender::inline CLR_PRECISION {
 
@@ -69,6 +70,30 @@ Planar flatten_planar(const Shape &shape, const Placement &placement) {
     return p;
 }
 
+/// The axes are the normals of the faces on their positive sides; each face's middle lies on its
+/// plane.
+Cuboid flatten_cuboid(const Scene &scene, const CuboidFaces &faces, const Placement &placement) {
+    Cuboid cuboid{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Shape &face = scene.shapes[faces[2 * k + 1]];
+        const auto middle_of = [&](std::size_t shape) {
+            return placement.exact(glm::dvec3(scene.shapes[shape].to_world[3]));
+        };
+        const glm::dvec3 axis = transformed_normal(face, {0, 0, 1});
+        const double high = glm::dot(axis, middle_of(faces[2 * k + 1]));
+        const double low = glm::dot(axis, middle_of(faces[2 * k]));
+        store(cuboid.axis[k], axis);
+        cuboid.middle[k] = static_cast<clr_real>((high + low) / 2);
+        cuboid.half_size[k] = static_cast<clr_real>((high - low) / 2);
+        const Shape &first = scene.shapes[faces[0]];
+        cuboid.slack = static_cast<clr_real>(
+            planar_wider * planar_reach(glm::dvec3(first.to_world[0]) * placement.scale,
+                                        glm::dvec3(first.to_world[1]) * placement.scale,
+                                        middle_of(faces[0])));
+    }
+    return cuboid;
+}
+
 /// The axis that the vector, in the renderer's units, lies along, 0 to 2, or none.
 int axis_of(const glm::dvec3 &v) {
     constexpr double aslant = 2e-7; // matrices in files are rotations by float32
@@ -90,13 +115,16 @@ unsigned axis_bits(const Shape &shape, const Placement &placement) {
     return static_cast<unsigned>(across) + 1;
 }
 
-/// The planars' shapes in the order of their primitives: those that cast no shadows last, and for
+/// The planars' shapes behind the faces of cuboids, in the order of their primitives: those that cast no shadows last, and for
 /// each kind of test one after the other, so that like scenes need the same kernel.
 std::vector<std::size_t> order_planars(const Flattening &work, SceneFacts &facts) {
     const Scene &scene = work.scene;
     std::vector<std::size_t> order;
+    std::set<std::size_t> faces;
+    for (const CuboidFaces &cuboid : work.cuboids)
+        faces.insert(cuboid.begin(), cuboid.end());
     for (std::size_t i = 0; i < scene.shapes.size(); ++i)
-        if (test_of(scene.shapes[i], work) == ShapeTest::planar)
+        if (test_of(scene.shapes[i], work) == ShapeTest::planar && faces.count(i) == 0)
             order.push_back(i);
     const auto bits_of = [&](std::size_t i) {
         return axis_bits(scene.shapes[i], work.flat.placement);
@@ -133,7 +161,14 @@ void store_coordinates(PrimitiveRecord &out, const Shape &shape, const Placement
 
 void flatten_planars(Flattening &work) {
     FlatScene &flat = work.flat;
-    for (const std::size_t i : order_planars(work, flat.facts)) {
+    std::vector<std::size_t> order;
+    for (const CuboidFaces &faces : work.cuboids) {
+        flat.cuboids.push_back(flatten_cuboid(work.scene, faces, flat.placement));
+        order.insert(order.end(), faces.begin(), faces.end());
+    }
+    const std::vector<std::size_t> others = order_planars(work, flat.facts);
+    order.insert(order.end(), others.begin(), others.end());
+    for (const std::size_t i : order) {
         const Shape &shape = work.scene.shapes[i];
         append_lane_wise_shape(i, work);
         flat.planars.push_back(flatten_planar(shape, flat.placement));

@@ -10,9 +10,6 @@ namespace clrender::inline CLR_PRECISION {
 
 namespace {
 
-/// As many spheres, and as many rectangles and disks, are tested by every ray; more go into the
-/// BVH.
-constexpr std::ptrdiff_t few_primitives = 16;
 Sphere flatten_sphere(const Shape &shape, const Placement &placement) {
     Sphere s{};
     store(s.center, glm::dvec3(placement.apply(glm::dvec3(shape.to_world[3]))));
@@ -193,7 +190,8 @@ void flatten_shapes(Flattening &work) {
     };
     work.spheres_in_bvh = count(ShapeKind::sphere) > few_primitives;
     work.disks_in_bvh = count(ShapeKind::disk) > few_primitives;
-    work.rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) > few_primitives;
+    const auto faces = static_cast<std::ptrdiff_t>(6 * work.cuboids.size());
+    work.rectangles_in_bvh = count(ShapeKind::rectangle, ShapeKind::disk) - faces > few_primitives;
 
     // The order is that of the primitives' numbers: lane-wise spheres, planars, triangles,
     // spheres that are too many to test one by one, quadrics.

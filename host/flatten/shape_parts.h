@@ -4,10 +4,15 @@
 #include "flatten_parts.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace clrender::inline CLR_PRECISION {
+
+/// As many spheres, and as many rectangles and disks beside the faces of cubes, are tested by every
+/// ray; more go into the BVH.
+inline constexpr std::ptrdiff_t few_primitives = 16;
 
 /// What rays are tested against.
 enum class ShapeTest {

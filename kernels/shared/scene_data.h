@@ -50,6 +50,16 @@ typedef struct {
 } Planar;
 CLR_STATIC_WORDS(Planar, 24);
 
+/* A cuboid: the points with |axis . p - middle| <= half_size for three unit vectors. What lies
+   nearer to a face than `slack` lies on it. */
+typedef struct {
+    clr_real axis[3][3];
+    clr_real middle[3];
+    clr_real half_size[3];
+    clr_real slack;
+} Cuboid;
+CLR_STATIC_WORDS(Cuboid, 16);
+
 /* What a primitive belongs to. The materials are those of the two sides, front | back << 16;
    CLR_NO_MATERIAL reflects nothing. */
 #define CLR_NO_MATERIAL 0xffffu
