@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include "cli/option_conflicts.h"
 #include "image/image.h"
 #include "log.h"
 #include "output_file.h"
@@ -551,26 +552,8 @@ void check_combination(const Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.spp && *options.spp < least_test_samples)
         refuse(fmt::format("test takes at least {} samples, -s allows {}", least_test_samples,
                            *options.spp));
-    const CheckpointOptions &checkpoint = options.checkpoint;
-    const bool has_checkpoint = !checkpoint.file.empty() || checkpoint.parts > 1;
-    if (options.command == Command::resume || options.command == Command::merge) {
-        if (!options.scene.empty())
-            refuse("resume and merge know their scene, expected no SCENE");
-        if (checkpoint.parts > 1 || options.check)
-            refuse("resume and merge exclude --part and --check");
-    }
-    if (options.command == Command::merge && options.outputs.empty())
-        refuse("merge needs -o, the picture to write");
-    if (options.command == Command::test && has_checkpoint)
-        refuse("test excludes --checkpoint and --part");
-    if (has_checkpoint && !raw.profile.empty())
-        refuse("--profile excludes --checkpoint and --part: it shows every sample once");
-    if (checkpoint.parts > 1 && options.stop.any())
-        refuse("--part takes a number of samples, it excludes --time and --target-error");
-    if (options.command == Command::test && options.stop.any())
-        refuse("test decides itself when it is done, it excludes --time and --target-error");
-    if (options.stop.any() && !raw.profile.empty())
-        refuse("--profile excludes --time and --target-error: it shows every sample once");
+    if (const auto conflict = conflict_of_ends(options, !raw.profile.empty()))
+        refuse(*conflict);
     if (options.quiet && options.verbose)
         refuse("--quiet excludes --verbose");
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")

@@ -1,0 +1,37 @@
+#include "cli/option_conflicts.h"
+
+#include <filesystem>
+#include <fmt/core.h>
+
+namespace clrender::cli {
+
+std::optional<std::string> conflict_of_ends(const Options &options, bool with_profile) {
+    const CheckpointOptions &checkpoint = options.checkpoint;
+    const bool has_checkpoint = !checkpoint.file.empty() || checkpoint.parts > 1;
+    if (options.command == Command::resume || options.command == Command::merge) {
+        if (!options.scene.empty())
+            return "resume and merge know their scene, expected no SCENE";
+        if (checkpoint.parts > 1 || options.check)
+            return "resume and merge exclude --part and --check";
+    }
+    if (options.command == Command::merge && options.outputs.empty())
+        return "merge needs -o, the picture to write";
+    std::error_code ignored;
+    if (options.command == Command::render && std::filesystem::exists(checkpoint.file, ignored))
+        return fmt::format("'{0}' is there already: `clrender resume {0}` goes on from it, or "
+                           "remove it",
+                           checkpoint.file);
+    if (options.command == Command::test && has_checkpoint)
+        return "test excludes --checkpoint and --part";
+    if (has_checkpoint && with_profile)
+        return "--profile excludes --checkpoint and --part: it shows every sample once";
+    if (checkpoint.parts > 1 && options.stop.any())
+        return "--part takes a number of samples, it excludes --time and --target-error";
+    if (options.command == Command::test && options.stop.any())
+        return "test decides itself when it is done, it excludes --time and --target-error";
+    if (options.stop.any() && with_profile)
+        return "--profile excludes --time and --target-error: it shows every sample once";
+    return std::nullopt;
+}
+
+} // namespace clrender::cli

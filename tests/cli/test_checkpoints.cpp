@@ -1,0 +1,263 @@
+/// Checkpoints and parts: the same bits as a render in one go, and what is refused.
+
+#include "image/image.h"
+#include "program.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <random>
+
+using namespace clrender;
+using namespace clrender::test;
+
+namespace {
+
+/// A lit floor with a ball: samples that neighbouring tiles share, three blocks and more.
+std::string scene_with(const std::string &power) {
+    return R"(<scene version="3.0.0">
+    <integrator type="path"><integer name="max_depth" value="4"/></integrator>
+    <sensor type="perspective">
+        <float name="fov" value="60"/>
+        <transform name="to_world"><lookat origin="0,3,-3" target="0,0,0" up="0,1,0"/></transform>
+        <film type="hdrfilm">
+            <integer name="width" value="20"/><integer name="height" value="18"/>
+        </film>
+        <sampler type="independent"><integer name="sample_count" value="64"/></sampler>
+    </sensor>
+    <shape type="rectangle">
+        <transform name="to_world"><rotate x="1" angle="-90"/><scale value="5"/></transform>
+    </shape>
+    <emitter type="point">
+        <point name="position" x="0" y="2" z="0"/><rgb name="intensity" value=")" +
+           power + R"("/>
+    </emitter>
+</scene>
+)";
+}
+
+const std::vector<std::string> quiet = {"-q", "--lanes", "4"};
+
+class Runs {
+public:
+    Runs() { folder_.write("scene.xml", scene_with("10")); }
+
+    [[nodiscard]] const TempFolder &folder() const { return folder_; }
+
+    ProgramResult run(std::vector<std::string> arguments,
+                      const std::function<void()> &prepare = {}) const {
+        arguments.insert(arguments.end(), quiet.begin(), quiet.end());
+        return Program(folder_.path(), arguments, {}, prepare).wait();
+    }
+    /// A run that has to succeed.
+    void must(const std::vector<std::string> &arguments) const {
+        const ProgramResult result = run(arguments);
+        INFO(result.err);
+        REQUIRE(result.exit_code == 0);
+    }
+    [[nodiscard]] std::vector<float> pixels(const std::string &name) const {
+        return read_image((folder_.path() / name).string()).f32;
+    }
+    /// Runs without a break, and returns its pixels.
+    [[nodiscard]] std::vector<float> in_one_go(const std::string &samples) const {
+        must({"scene.xml", "-s", samples, "-o", "one.exr"});
+        return pixels("one.exr");
+    }
+
+private:
+    TempFolder folder_;
+};
+
+} // namespace
+
+TEST_CASE("A render that is extended has the bits of one in one go") {
+    const Runs runs;
+    for (const auto &[first, then] :
+         std::vector<std::pair<std::string, std::string>>{{"16", "64"}, {"40", "100"}}) {
+        runs.must({"scene.xml", "-s", first, "-o", "a.exr", "--checkpoint", "c.exr"});
+        CHECK(runs.pixels("c.exr") == runs.pixels("a.exr"));
+        CHECK(runs.pixels("c.exr") == runs.in_one_go(first));
+        runs.must({"resume", "c.exr", "-s", then});
+        const auto expected = runs.in_one_go(then);
+        CHECK(runs.pixels("a.exr") == expected);
+        CHECK(runs.pixels("c.exr") == expected);
+        fs::remove(runs.folder().path() / "c.exr");
+    }
+}
+
+TEST_CASE("The variance goes on with the picture") {
+    const Runs runs;
+    const std::vector<std::string> layer = {"--aov", "variance"};
+    runs.must(
+        {"scene.xml", "-s", "128", "--aov", "variance", "-o", "one.exr", "--stats", "one.json"});
+    runs.must(
+        {"scene.xml", "-s", "32", "--aov", "variance", "-o", "a.exr", "--checkpoint", "c.exr"});
+    runs.must({"resume", "c.exr", "-s", "128", "--stats", "a.json"});
+    CHECK(runs.pixels("a.exr") == runs.pixels("one.exr"));
+    const auto error = [&](const char *name) {
+        const std::string text = read_file(runs.folder().path() / name);
+        return text.substr(text.find("\"error\""), 150);
+    };
+    CHECK(error("a.json") == error("one.json"));
+}
+
+TEST_CASE("A render that is killed at any time goes on to the same bits") {
+    const Runs runs;
+    const std::string samples = "4096";
+    const auto expected = runs.in_one_go(samples);
+    std::mt19937 random(7);
+    const auto kill_within = [&](std::vector<std::string> arguments, unsigned most_ms) {
+        arguments.insert(arguments.end(), quiet.begin(), quiet.end());
+        arguments.insert(arguments.end(), {"--checkpoint-interval", "0.01", "--tile", "2"});
+        Program program(runs.folder().path(), arguments);
+        for (int i = 0; i < 6000 && !runs.folder().has("c.exr"); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        std::this_thread::sleep_for(std::chrono::milliseconds(random() % most_ms));
+        program.send(SIGKILL);
+        (void)program.wait();
+    };
+    for (int i = 0; i < 3; ++i) {
+        kill_within({"scene.xml", "-s", samples, "-o", "a.exr", "--checkpoint", "c.exr"}, 100);
+        REQUIRE(runs.folder().has("c.exr"));
+        kill_within({"resume", "c.exr"}, 400);
+        runs.must({"resume", "c.exr"});
+        CHECK(runs.pixels("a.exr") == expected);
+        fs::remove(runs.folder().path() / "c.exr");
+    }
+}
+
+TEST_CASE("A signal leaves a checkpoint from which the render goes on") {
+    const Runs runs;
+    std::vector<std::string> arguments = {"scene.xml",    "-s",    "1048576", "-o", "a.exr", "-v",
+                                          "--checkpoint", "c.exr", "--lanes", "4"};
+    Program program(runs.folder().path(), arguments);
+    program.wait_for("the first launch has ended");
+    program.send(SIGINT);
+    CHECK(program.wait().exit_code == 130);
+    REQUIRE(runs.folder().has("c.exr"));
+    const ProgramResult less = runs.run({"resume", "c.exr", "-s", "1"});
+    CHECK(less.exit_code == 2);
+    CHECK_THAT(less.err, Catch::Contains("samples already"));
+}
+
+TEST_CASE("Parts add up to the bits of a single render, in any order") {
+    const Runs runs;
+    const auto expected = runs.in_one_go("128");
+    // Four blocks: dealt whole to two and three parts, and by tiles to seven.
+    for (const int parts : {2, 3, 7}) {
+        std::vector<std::string> files;
+        for (int part = 1; part <= parts; ++part) {
+            const std::string share = std::to_string(part) + "/" + std::to_string(parts);
+            runs.must({"scene.xml", "-s", "128", "--part", share});
+            files.push_back("scene.part" + std::to_string(part) + "of" + std::to_string(parts) +
+                            ".exr");
+        }
+        std::reverse(files.begin(), files.end());
+        std::swap(files.front(), files[files.size() / 2]);
+        std::vector<std::string> merge = {"merge"};
+        merge.insert(merge.end(), files.begin(), files.end());
+        merge.insert(merge.end(), {"-o", "m.exr"});
+        runs.must(merge);
+        CHECK(runs.pixels("m.exr") == expected);
+    }
+    runs.must({"resume", "m.exr", "-s", "192", "-o", "more.exr"});
+    CHECK(runs.pixels("more.exr") == runs.in_one_go("192"));
+
+    const ProgramResult twice = runs.run(
+        {"merge", "scene.part1of2.exr", "scene.part2of2.exr", "scene.part1of2.exr", "-o", "x.exr"});
+    CHECK(twice.exit_code == 2);
+    CHECK_THAT(twice.err, Catch::Contains("part 1 of 2"));
+    const ProgramResult mixed =
+        runs.run({"merge", "scene.part1of2.exr", "scene.part2of3.exr", "-o", "x.exr"});
+    CHECK(mixed.exit_code == 2);
+    const ProgramResult missing =
+        runs.run({"merge", "scene.part1of3.exr", "scene.part3of3.exr", "-o", "x.exr"});
+    CHECK(missing.exit_code == 0);
+    CHECK_THAT(missing.err, Catch::Contains("these are missing: 2"));
+    runs.folder().write("scene.xml", scene_with("11"));
+    runs.must({"scene.xml", "-s", "128", "--part", "2/2"});
+    const ProgramResult other =
+        runs.run({"merge", "scene.part1of2.exr", "scene.part2of2.exr", "-o", "y.exr"});
+    CHECK(other.exit_code == 2);
+    CHECK_THAT(other.err, Catch::Contains("another scene"));
+    CHECK_FALSE(runs.folder().has("y.exr"));
+}
+
+TEST_CASE("A checkpoint of something else is refused by name") {
+    const Runs runs;
+    runs.must({"scene.xml", "-s", "16", "-o", "a.exr", "--checkpoint", "c.exr"});
+    const auto refused = [&](std::vector<std::string> arguments, const std::string &word) {
+        const ProgramResult result = runs.run(std::move(arguments));
+        CHECK(result.exit_code == 2);
+        CHECK(is_one_line(result.err));
+        CHECK_THAT(result.err, Catch::Contains(word));
+    };
+    refused({"scene.xml", "--checkpoint", "c.exr"}, "is there already");
+    refused({"resume", "c.exr", "--seed", "5"}, "--seed");
+    refused({"resume", "c.exr", "-r", "9x9"}, "--resolution");
+    refused({"resume", "c.exr", "--max-depth", "2"}, "--max-depth");
+    refused({"resume", "c.exr", "--target-error", "1%"}, "variances");
+    refused({"resume", "one.exr"}, "one.exr");
+    refused({"resume", "a.exr"}, "no checkpoint");
+    refused({"scene.xml", "-s", "20", "--part", "1/2"}, "cannot be dealt");
+    runs.folder().write("scene.xml", scene_with("11"));
+    refused({"resume", "c.exr", "-s", "32"}, "another scene");
+}
+
+TEST_CASE("A damaged checkpoint is refused") {
+    const Runs runs;
+    runs.must({"scene.xml", "-s", "16", "-o", "a.exr", "--checkpoint", "c.exr"});
+    const std::string whole = read_file(runs.folder().path() / "c.exr");
+    std::mt19937 random(3);
+    for (int i = 0; i < 12; ++i) {
+        std::string damaged = whole;
+        if (i % 2 == 0)
+            damaged.resize(whole.size() * static_cast<std::size_t>(i + 1) / 13);
+        else
+            for (std::size_t k = 0; k < 8; ++k)
+                damaged[whole.size() / 2 + random() % (whole.size() / 2)] ^= '\x55';
+        runs.folder().write("d.exr", damaged);
+        const ProgramResult result = runs.run({"merge", "d.exr", "-o", "x.exr"});
+        INFO(i << ": " << result.err);
+        CHECK(result.exit_code == 2);
+        CHECK(is_one_line(result.err));
+        CHECK_FALSE(runs.folder().has("x.exr"));
+    }
+}
+
+TEST_CASE("A full disk keeps the checkpoint before, and the render goes on") {
+    const Runs runs;
+    runs.must({"scene.xml", "-r", "320x240", "-s", "16", "-o", "a.pfm", "--checkpoint", "c.exr"});
+    const std::string before = read_file(runs.folder().path() / "c.exr");
+    const ProgramResult result = runs.run({"resume", "c.exr", "-s", "64", "-o", "small.jpg"}, [] {
+        const rlimit limit = {2 << 20, 2 << 20};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    });
+    INFO(result.err);
+    CHECK(result.exit_code == 4);
+    CHECK_THAT(result.err, Catch::Contains("the checkpoint before it stays"));
+    CHECK(read_file(runs.folder().path() / "c.exr") == before);
+    CHECK(runs.folder().has("small.jpg"));
+    CHECK(before.size() > 2 << 20);
+    runs.must({"resume", "c.exr", "-s", "64", "-o", "a.pfm"});
+    runs.must({"scene.xml", "-r", "320x240", "-s", "64", "-o", "one.pfm"});
+    CHECK(runs.pixels("a.pfm") == runs.pixels("one.pfm"));
+}
+
+TEST_CASE("A render by time writes its picture and says why it ended") {
+    const Runs runs;
+    std::vector<std::string> arguments = {"scene.xml", "--time",  "1s", "-o",
+                                          "a.exr",     "--lanes", "4"};
+    const ProgramResult result = Program(runs.folder().path(), arguments).wait();
+    CHECK(result.exit_code == 0);
+    CHECK_THAT(result.err, Catch::Contains("the time is up after"));
+    CHECK(runs.folder().has("a.exr"));
+    const ProgramResult exact =
+        Program(runs.folder().path(), {"scene.xml", "--target-error", "20%", "-o", "a.exr",
+                                       "--stats", "s.json", "--lanes", "4"})
+            .wait();
+    CHECK(exact.exit_code == 0);
+    CHECK_THAT(exact.err, Catch::Contains("target reached after"));
+    CHECK_THAT(read_file(runs.folder().path() / "s.json"),
+               Catch::Contains("\"ended_by\": \"error\""));
+}
