@@ -167,6 +167,7 @@ void flatten_quadrics(Flattening &work) {
         flat.quadrics.push_back(make_quadric(placed, inverted));
         flat.bvh_quadrics.push_back(make_bvh_quadric(placed, flat.quadrics.back(), id));
         work.primitive_of_shape[static_cast<int>(i)] = first + id;
+        note_hits(shape, first + id, {}, work);
     }
     if (work.wants("HAS_QUADRICS") && flat.quadrics.empty())
         flat.quadrics.emplace_back();
