@@ -44,6 +44,8 @@ GROUPS = {
     "roulette": "ROULETTE",
     "alpha": "HAS_ALPHA",
 }
+# What a kernel cannot be forced to: the sky's model takes the place of the map.
+NOT_FORCED = "HAS_SKY,HAS_SUN"
 SPECIALISED, EVERYTHING = "specialised", "everything"
 SPHERES = ROOT / "scenes" / "spheres.xml"
 

@@ -261,7 +261,8 @@ struct RawOptions {
 };
 
 void add_picture_options(CLI::App &app, Options &options, RawOptions &raw) {
-    app.add_option("SCENE", options.scene, "Mitsuba 3 scene (.xml) or a model (.gltf, .glb, .obj, .ply)")
+    app.add_option("SCENE", options.scene,
+                   "Mitsuba 3 scene (.xml) or a model (.gltf, .glb, .obj, .ply)")
         ->type_name("");
     app.add_option("-o,--output", options.outputs,
                    "Picture to write, repeatable: .png .jpg .hdr .exr .pfm\n"

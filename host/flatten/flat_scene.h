@@ -51,7 +51,7 @@ struct SceneFacts {
     int light_samples = 1; ///< as LIGHT_SAMPLES
     int filter_border = 0; ///< pixels around its own that a sample reaches
     Strategy strategy = Strategy::mis;
-    bool shows_depth = false; ///< the depth integrator
+    bool shows_depth = false;   ///< the depth integrator
     bool weight_window = false; ///< roulette is one, where paths are long enough
     bool hides_emitters = false;
     bool free_passages = false; ///< as FREE_PASSAGES, if there are passages

@@ -115,8 +115,9 @@ unsigned axis_bits(const Shape &shape, const Placement &placement) {
     return static_cast<unsigned>(across) + 1;
 }
 
-/// The planars' shapes behind the faces of cuboids, in the order of their primitives: those that cast no shadows last, and for
-/// each kind of test one after the other, so that like scenes need the same kernel.
+/// The planars' shapes behind the faces of cuboids, in the order of their primitives: those that
+/// cast no shadows last, and for each kind of test one after the other, so that like scenes need
+/// the same kernel.
 std::vector<std::size_t> order_planars(const Flattening &work, SceneFacts &facts) {
     const Scene &scene = work.scene;
     std::vector<std::size_t> order;

@@ -17,7 +17,8 @@ struct LoadOptions {
 };
 
 /// Reads a Mitsuba XML scene, or a bare .gltf / .glb / .obj / .ply model (given a framing
-/// camera and a soft light where it has none). Throws InputError. Warns of every -D that nothing uses and of all that is ignored.
+/// camera and a soft light where it has none). Throws InputError. Warns of every -D that nothing
+/// uses and of all that is ignored.
 Scene load_scene(const std::string &path, const LoadOptions &options = {});
 
 } // namespace clrender

@@ -81,8 +81,8 @@ int SceneReader::read_mesh_attribute(Properties &properties) {
     const double scale = properties.number("scale", 1);
     texture.scale = Rgb(scale);
     if (!(scale >= 0 && scale <= max_radiance))
-        properties.fail("scale", fmt::format("is {:g}, expected a number from 0 to {:g}",
-                                             scale, max_radiance));
+        properties.fail(
+            "scale", fmt::format("is {:g}, expected a number from 0 to {:g}", scale, max_radiance));
     files_.want_attribute(texture.attribute);
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;

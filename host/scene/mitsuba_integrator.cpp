@@ -18,8 +18,9 @@ void read_path(Properties &properties, Integrator &integrator) {
     integrator.kind = IntegratorKind::path;
     integrator.max_depth =
         static_cast<int>(properties.integer("max_depth", integrator.max_depth, -1, max_count));
+    const int rr_depth = static_cast<int>(properties.integer("rr_depth", 1, 1, max_count));
     if (properties.has("rr_depth"))
-        integrator.rr_depth = static_cast<int>(properties.integer("rr_depth", 1, 1, max_count));
+        integrator.rr_depth = rr_depth;
     integrator.hide_emitters = properties.boolean("hide_emitters", false);
 }
 

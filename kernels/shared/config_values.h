@@ -41,9 +41,10 @@
 
 /* ROULETTE: how paths may end by chance. */
 #define CLR_ROULETTE_NONE 0
-#define CLR_ROULETTE_DEPTH 1  /* from the depth on that the scene or the command line states */
-#define CLR_ROULETTE_WINDOW 2 /* where they have become light, from the second diffuse vertex on   \
-                               */
+#define CLR_ROULETTE_DEPTH 1 /* from the depth on that the scene or the command line states */
+#define CLR_ROULETTE_WINDOW                                                                        \
+    2 /* where they have become light, from the second diffuse vertex on                           \
+       */
 
 /* LIGHT_COUNT: more than one light that is sampled. */
 #define CLR_MANY_LIGHTS (-1)

@@ -26,7 +26,10 @@ class Ablation(unittest.TestCase):
         grouped = [name for names in ablation.GROUPS.values() for name in names.split(",")]
         self.assertEqual(len(grouped), len(set(grouped)))
         self.assertLessEqual(set(grouped), set(known))
-        self.assertLessEqual({name for name in known if name.startswith("HAS_")}, set(grouped))
+        not_forced = set(ablation.NOT_FORCED.split(","))
+        self.assertLessEqual(not_forced, set(known))
+        self.assertEqual({name for name in known if name.startswith("HAS_")} - set(grouped),
+                         not_forced)
 
     def test_tables(self):
         measured = {pathlib.Path("room.xml"): {

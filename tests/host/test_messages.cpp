@@ -229,7 +229,8 @@ TEST_CASE("what a scene has beside what is rendered is told with its line", "[me
         folder.file("scene.xml", "<scene version='3.0.0'>\n<sensor type='perspective'/>\n"
                                  "<sensor type='irradiancemeter'/>\n<sensor type='thinlens'>\n"
                                  "<float name='apertur' value='1'/></sensor>\n</scene>\n");
-    const std::string all = test::error_of([&] { (void)load_scene(path, {.defines = {}, .all_faults = true}); });
+    const std::string all =
+        test::error_of([&] { (void)load_scene(path, {.defines = {}, .all_faults = true}); });
     CHECK(has(all, "scene.xml:3: sensor \"irradiancemeter\" is not supported"));
     CHECK(has(all, "scene.xml:4: sensor \"thinlens\""));
     CHECK(test::error_of([&] { (void)load_scene(path); }).empty());

@@ -125,7 +125,7 @@ TEST_CASE("what is no scene file is refused without waiting for it") {
     CHECK_THAT(error_of([&] { load(path); }),
                StartsWith(path + ":2: ") && Contains("not a regular file"));
     CHECK_THAT(error_of([&] { load(folder.file("scene.txt", whole(""))); }),
-               Contains("expected a .xml, .obj or .ply"));
+               Contains("expected a .xml, .gltf, .glb, .obj or .ply"));
 }
 
 TEST_CASE("two hundred thousand nested elements are refused") {
