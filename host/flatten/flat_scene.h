@@ -84,7 +84,7 @@ struct FlatScene {
         return static_cast<std::size_t>(facts.sphere_count) + planars.size();
     }
     [[nodiscard]] bool has_hierarchy() const {
-        return triangle_count > 0 || has_bvh_spheres() || !quadrics.empty();
+        return triangle_count > 0 || has_bvh_spheres() || !bvh_quadrics.empty();
     }
     [[nodiscard]] bool has_bvh_spheres() const {
         return spheres.size() > static_cast<std::size_t>(facts.sphere_count);

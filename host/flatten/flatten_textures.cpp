@@ -74,6 +74,7 @@ TextureInfo describe(const Texture &source, uint offset, const Flattening &work)
         t.kind = CLR_TEXTURE_CHECKERBOARD;
         store(t.color0, source.color0);
         store(t.color1, source.color1);
+        t.product = t.coordinates = CLR_NONE;
         return t;
     }
     describe_factors(source, work, t);
