@@ -35,7 +35,9 @@ std::string furnace(const std::string &room, double a) {
         room, a);
 }
 
-const std::string cube = R"(<shape type="cube"/>)";
+/// Aslant, so that it is triangles in a tree.
+const std::string cube = R"(<shape type="cube"><transform name="to_world">
+    <matrix value="1 .1 0 0  0 1 0 0  0 0 1 0  0 0 0 1"/></transform></shape>)";
 
 int roulette(const std::string &integrator, const std::string &shape = cube) {
     return config_of(flatten(scene_from_xml(integrator + shape)), {}).ROULETTE;
