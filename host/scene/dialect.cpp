@@ -155,7 +155,10 @@ void Dialect::upgrade(pugi::xml_node node, XmlFile &file) const {
         return;
     }
 
-    // The names of properties first, so that the rules can tell each by one name.
+    // The names of properties first, so that the rules can tell each by one name. Up to version 0.6
+    // capitals in a type did not matter.
+    if (before_2_)
+        node.attribute("type").set_value(to_lower(node.attribute("type").value()).c_str());
     const std::string type = node.attribute("type").value();
     if (before_2_) {
         for (const pugi::xml_node child : node.children())

@@ -21,6 +21,10 @@ public:
     /// of. Throws InputError for a colour that is none.
     void upgrade(pugi::xml_node node, XmlFile &file) const;
 
+    /// Whether a property may be set twice, as Mitsuba let it up to version 0.6: the last one
+    /// holds.
+    [[nodiscard]] bool last_property_holds() const { return before_2_; }
+
 private:
     [[nodiscard]] bool applies(Versions versions) const {
         return before_2_ || versions == Versions::all;

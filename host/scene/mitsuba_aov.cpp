@@ -52,7 +52,7 @@ std::vector<Aov> parse_aovs(Properties &properties, const std::string &text) {
 
 } // namespace
 
-/// The picture is that of the first integrator inside.
+/// The picture is that of the first integrator inside, or black where there is none.
 void SceneReader::read_layers(Properties &properties) {
     properties.ignore({"hide_emitters"});
     const bool is_aov = properties.object().type == "aov";
@@ -66,11 +66,17 @@ void SceneReader::read_layers(Properties &properties) {
         layers.aovs = parse_aovs(properties, *text);
     }
     const auto nested = properties.children("integrator");
-    if (nested.empty())
-        throw UnsupportedError(properties.where(), properties.description() +
-                                                       " has no nested integrator, expected one: "
-                                                       "layers without a picture are not "
-                                                       "supported");
+    if (nested.empty()) {
+        if (!is_aov)
+            throw InputError(properties.where(),
+                             properties.description() + " has no nested integrator, expected one");
+        scene_.integrator.kind = IntegratorKind::path;
+        scene_.integrator.max_depth = 0;
+        log::warn(properties.where(), properties.description() +
+                                          " has no nested integrator: the picture beside the "
+                                          "layers is black");
+        return;
+    }
     std::vector<IntegratorLayer> pictures;
     int unnamed = 0;
     for (const Child *child : nested) {

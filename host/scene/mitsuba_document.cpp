@@ -227,10 +227,16 @@ void DocumentReader::read_value(pugi::xml_node node, const Place &place) {
         throw InputError(where, "<" + std::string(node.name()) +
                                     "> has no attribute \"name\", expected name=\"...\"");
     Object &parent = object(place.parent);
-    for (const Property &property : parent.properties)
-        if (property.name == name)
-            throw InputError(where, in_quotes(name) + " is already set in line " +
-                                        std::to_string(property.line) + ", expected it once");
+    const auto same = std::find_if(parent.properties.begin(), parent.properties.end(),
+                                   [&](const Property &other) { return other.name == name; });
+    if (same != parent.properties.end()) {
+        const std::string fault =
+            in_quotes(name) + " is already set in line " + std::to_string(same->line);
+        if (!place.dialect.last_property_holds())
+            throw InputError(where, fault + ", expected it once");
+        log::warn(where, fault + ": this value holds");
+        parent.properties.erase(same);
+    }
     parent.properties.push_back({name, parse_value(node, place), where.line});
 }
 

@@ -92,6 +92,8 @@ void SceneReader::read_integrator(int object) {
         read_direct(properties, integrator);
         properties.ignore_rest();
         log::warn(properties.where(), properties.description() + " is rendered as \"direct\"");
+    } else if (type == "irrcache" || type == "adaptive") {
+        read_wrapped_integrator(properties);
     } else if (const SameLight *other = same_light_as_path(type)) {
         read_other_integrator(properties, *other);
     } else {
@@ -99,6 +101,30 @@ void SceneReader::read_integrator(int object) {
                          {"path", "direct", "depth", "aov", "moment"});
     }
     properties.finish();
+}
+
+/// Integrators of Mitsuba 0.6 that bring the light that the one inside of them finds, from fewer of
+/// its samples.
+void SceneReader::read_wrapped_integrator(Properties &properties) {
+    const auto nested = properties.children("integrator");
+    if (nested.size() != 1)
+        throw InputError(properties.where(), properties.description() + " has " +
+                                                 std::to_string(nested.size()) +
+                                                 " nested integrators, expected one");
+    const Object &inner = document_.at(nested.front()->object);
+    if (inner.type == "aov" || inner.type == "moment")
+        throw InputError(document_.where(inner), "integrator " + in_quotes(inner.type) +
+                                                     " is nested, expected a path integrator here");
+    for (const char *part : {"indirect_only", "debug"})
+        if (properties.boolean(part, false))
+            throw UnsupportedError(properties.where(part), in_quotes(part) + " of " +
+                                                               properties.description() +
+                                                               " is not supported, expected false");
+    properties.ignore_rest();
+    read_integrator(nested.front()->object);
+    log::warn(properties.where(), properties.description() +
+                                      " is left out: the integrator inside of it estimates the "
+                                      "same light");
 }
 
 void SceneReader::read_other_integrator(Properties &properties, const SameLight &other) {

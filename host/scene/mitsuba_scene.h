@@ -136,6 +136,7 @@ private:
     void read_sampler(int object);
     void read_film(int object);
     void read_integrator(int object);
+    void read_wrapped_integrator(Properties &properties);
     void read_other_integrator(Properties &properties, const SameLight &other);
     // mitsuba_aov.cpp
     void read_layers(Properties &properties);

@@ -130,6 +130,32 @@ TEST_CASE("a file of any version below 2, or of none, may have names of both kin
         CHECK(has(error_of_version(version, both), "scene.xml:1: version is "));
 }
 
+TEST_CASE("up to version 0.6 the last of two values holds, and types have any case", "[dialect]") {
+    const std::string twice = "<integrator type='path'><integer name='maxDepth' value='7'/>\n"
+                              "<integer name='max_depth' value='3'/></integrator>";
+    const std::string capitals = "<integrator type='Path'/><shape type='Sphere'><bsdf "
+                                 "type='Lambertian'><rgb name='reflectance' value='.25'/></bsdf>"
+                                 "</shape>";
+    for (const char *version : {"", "0.5.0", "0.6.0", "1.0.0"}) {
+        CAPTURE(version);
+        const Loaded loaded = load_version(version, twice);
+        CHECK(loaded.scene.integrator.max_depth == 3);
+        CHECK(has(loaded.said, "scene.xml:3: warning: \"max_depth\" is already set in line 2: this "
+                               "value holds"));
+        const Scene scene = load_version(version, capitals).scene;
+        CHECK(scene.shapes.size() == 1);
+        check_near(texture_in(scene).value, Rgb(.25));
+    }
+    const std::string today = "<integrator type='path'><integer name='max_depth' value='7'/>\n"
+                              "<integer name='max_depth' value='3'/></integrator>";
+    for (const char *version : {"2.0.0", "3.0.0"}) {
+        CHECK(has(error_of_version(version, today), "3: \"max_depth\" is already set in line 2, "
+                                                    "expected it once"));
+        CHECK(
+            has(error_of_version(version, capitals), "\"Sphere\" is not supported, did you mean"));
+    }
+}
+
 TEST_CASE("every version of the names may be in an included file", "[dialect]") {
     const test::ScratchFolder folder;
     (void)folder.file("old.xml", "<scene version='0.5.0'>\n<integrator type='path'>"

@@ -72,6 +72,29 @@ TEST_CASE("integrators of the same light are path tracing", "[integrators]") {
                       "\", did you mean \"max_depth\"?"));
 }
 
+TEST_CASE("caches around an integrator are left out", "[integrators]") {
+    const std::string path = integrator("path", "<integer name='max_depth' value='4'/>");
+    for (const char *type : {"irrcache", "adaptive"}) {
+        const Loaded loaded = load(integrator(type, "<float name='quality' value='2'/>" + path));
+        CHECK(loaded.integrator.kind == IntegratorKind::path);
+        CHECK(loaded.integrator.max_depth == 4);
+        CHECK(has(loaded.said,
+                  "scene.xml:2: warning: integrator \"" + std::string(type) + "\" is left out"));
+        CHECK(has(test::error_of_text(integrator(type)), "has 0 nested integrators, expected one"));
+        CHECK(has(test::error_of_text(integrator(type, path + path)), "has 2 nested integrators"));
+        CHECK(has(
+            test::error_of_text(integrator(
+                type, "\n" + integrator("aov", "<string name='aovs' value='d:depth'/>" + path))),
+            "3: integrator \"aov\" is nested"));
+        CHECK(has(test::error_of_text(
+                      integrator(type, path + "\n<boolean name='indirect_only' value='true'/>")),
+                  "3: \"indirect_only\" of integrator \"" + std::string(type) +
+                      "\" is not supported"));
+    }
+    const Loaded photons = load(integrator("irrcache", integrator("photonmapper")));
+    CHECK(photons.integrator.kind == IntegratorKind::path);
+}
+
 TEST_CASE("light that path tracing does not find is warned of", "[integrators]") {
     const char *const caustics = "(caustics)";
     CHECK(has(load(std::string(point_light) + mirror + integrator("bdpt")).said, caustics));
@@ -118,7 +141,10 @@ TEST_CASE("layers around a picture", "[integrators]") {
     const Loaded two = load(integrator("aov", aovs + path + integrator("direct")));
     CHECK(two.integrator.max_depth == 4);
     CHECK(has(test::error_of_text(integrator("aov", path)), "2: integrator \"aov\" has no string"));
-    CHECK(has(test::error_of_text(integrator("aov", aovs)), "2: integrator \"aov\" has no nested"));
+    const Loaded none = load(integrator("aov", aovs));
+    CHECK(none.integrator.max_depth == 0);
+    CHECK(has(none.said, "2: warning: integrator \"aov\" has no nested integrator: the picture"));
+    CHECK(has(test::error_of_text(integrator("moment")), "2: integrator \"moment\" has no nested"));
     CHECK(has(test::error_of_text("<integrator type='aov' id='a'><string name='aovs' "
                                   "value=''/><ref id='a'/></integrator>"),
               "is nested, expected a path integrator inside"));
