@@ -164,6 +164,10 @@ TEST_CASE("Parts add up to the bits of a single render, in any order") {
     runs.must({"resume", "m.exr", "-s", "192", "-o", "more.exr"});
     CHECK(runs.pixels("more.exr") == runs.in_one_go("192"));
 
+    // Shares of tiles become shares of blocks.
+    const ProgramResult longer = runs.run({"resume", "scene.part2of7.exr", "-s", "1024"});
+    CHECK(longer.exit_code == 2);
+    CHECK_THAT(longer.err, Catch::Contains("of 1024 samples"));
     const ProgramResult twice = runs.run(
         {"merge", "scene.part1of2.exr", "scene.part2of2.exr", "scene.part1of2.exr", "-o", "x.exr"});
     CHECK(twice.exit_code == 2);
