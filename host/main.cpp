@@ -191,8 +191,20 @@ void add_checkpoints(const cli::Options &options, const Scene &scene,
     if (!options.stop.any())
         run.spp = scene.sample_count;
     const std::string described = cli::describe_run(run);
-    if (resumed)
+    if (resumed) {
         cli::check_same_run(checkpoint.resumed, resumed->options, options.scene, described);
+        // The shares of fewer blocks than parts are others than those of more.
+        if (checkpoint.parts > 1 &&
+            !missing_work(resumed->work,
+                          part_of_work(resumed->layout.grid, blocks_of(scene.sample_count),
+                                       checkpoint.part, checkpoint.parts))
+                 .empty())
+            throw InputError(
+                {checkpoint.resumed, 0},
+                fmt::format("has samples that are not of part {} of {} of {} samples, expected the "
+                            "number that it was begun with",
+                            checkpoint.part, checkpoint.parts, scene.sample_count));
+    }
     writer.emplace(checkpoint, described);
     how.resumed = resumed;
     how.part = checkpoint.part;

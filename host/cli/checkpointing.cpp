@@ -1,6 +1,8 @@
 #include "cli/checkpointing.h"
 
 #include "checksum.h"
+#include "device/kernel_program.h"
+#include "device/kernel_sources.h"
 #include "error.h"
 #include "input_file.h"
 #include "log.h"
@@ -18,18 +20,41 @@ namespace {
 using Json = nlohmann::json;
 
 /// What does not change the picture's bits, or belongs to one part or end of a render alone.
-const std::vector<std::string> free_keys = {"scene",   "samples",  "part",  "parts",
-                                            "outputs", "exposure", "folder"};
+const std::vector<std::string> free_keys = {"scene",        "samples",  "part",          "parts",
+                                            "outputs",      "exposure", "folder",        "--aov",
+                                            "--kernel-dir", "--time",   "--target-error"};
 
-/// Of all files that the scene has been read from, whatever their names and order.
-std::string hash_of_scene() {
-    std::vector<std::uint64_t> sums;
+std::string absolute(const std::string &path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
+}
+
+/// Of all files that the scene has been read from, and their places beside its own: the folder may
+/// be another one, but two files that have changed their names are another scene.
+std::string hash_of_scene(const std::string &scene) {
+    const std::filesystem::path folder = std::filesystem::path(absolute(scene)).parent_path();
+    std::map<std::string, std::uint64_t> sums;
     for (const std::string &path : noted_input_files()) {
         const std::string bytes = read_input_file(path);
-        sums.push_back(checksum(0, bytes.data(), bytes.size()));
+        const auto place = std::filesystem::path(absolute(path)).lexically_relative(folder);
+        // The scene may have been renamed.
+        sums[absolute(path) == absolute(scene) ? "" : place.string()] =
+            checksum(0, bytes.data(), bytes.size());
     }
-    std::sort(sums.begin(), sums.end());
-    return fmt::format("{:016x}", checksum(0, sums.data(), sums.size() * sizeof(sums[0])));
+    std::uint64_t sum = 0;
+    for (const auto &[place, of_file] : sums) {
+        sum = checksum(sum, place.data(), place.size());
+        sum = checksum(sum, &of_file, sizeof(of_file));
+    }
+    return fmt::format("{:016x}", sum);
+}
+
+/// Of the kernel's text: another one may compute other bits.
+std::string hash_of_kernel(const std::string &folder) {
+    std::uint64_t sum = 0;
+    for (const KernelSource &source :
+         folder.empty() ? embedded_kernel_sources() : read_kernel_sources(folder))
+        sum = checksum(sum, source.text.data(), source.text.size());
+    return fmt::format("{:016x}", sum);
 }
 
 /// What the command line says that changes the picture.
@@ -43,7 +68,7 @@ Json picture_options(const Options &options) {
                                  ? Json({options.resolution->width, options.resolution->height})
                                  : Json()},
             {"--max-depth", optional(options.max_depth)},
-            {"--rr-depth", optional(options.rr_depth)},
+            {"--rr-depth", options.weight_window ? Json("auto") : optional(options.rr_depth)},
             {"--seed", options.seed.value_or(0)},
             {"--precision", options.double_precision ? "double" : "single"},
             {"--accel", sampling.brute_force ? "none" : "bvh"},
@@ -51,6 +76,7 @@ Json picture_options(const Options &options) {
             {"--sampler", sampling.independent_sampler ? "independent" : "sobol"},
             {"--strategy", static_cast<int>(sampling.strategy)},
             {"--light-samples", sampling.light_samples},
+            {"--specular-connections", sampling.specular_connections},
             {"--generic", sampling.forced_features}};
 }
 
@@ -66,7 +92,8 @@ void take_picture_options(const Json &run, Options &options) {
     if (!size.is_null())
         options.resolution = Resolution{size.at(0), size.at(1)};
     take(run.at("--max-depth"), options.max_depth);
-    take(run.at("--rr-depth"), options.rr_depth);
+    options.weight_window = run.at("--rr-depth") == "auto";
+    take(options.weight_window ? Json() : run.at("--rr-depth"), options.rr_depth);
     options.seed = run.at("--seed").get<std::uint32_t>();
     options.double_precision = run.at("--precision") == "double";
     SamplingOptions &sampling = options.sampling;
@@ -75,7 +102,21 @@ void take_picture_options(const Json &run, Options &options) {
     sampling.independent_sampler = run.at("--sampler") == "independent";
     sampling.strategy = static_cast<Strategy>(run.at("--strategy").get<int>());
     sampling.light_samples = run.at("--light-samples");
+    sampling.specular_connections = run.at("--specular-connections");
     sampling.forced_features = run.at("--generic").get<ForcedFeatures>();
+}
+
+/// Where nothing is said of the end, that of the first run; a time is over once it has passed.
+void take_end(const Json &run, const std::string &path, Options &options) {
+    if (options.spp || options.stop.any())
+        return;
+    if (run.at("samples") > 0)
+        options.spp = run.at("samples").get<int>();
+    if (run.at("--target-error") > 0)
+        options.stop.error = run.at("--target-error").get<double>();
+    if (!options.spp && !options.stop.any())
+        throw InputError({path, 0}, "was to end after a time, expected when it is to end now: "
+                                    "--time, -s or --target-error");
 }
 
 Json parse_run(const std::string &path, const std::string &run) {
@@ -90,11 +131,16 @@ Json parse_run(const std::string &path, const std::string &run) {
 
 std::string describe_run(const Options &options) {
     Json run = picture_options(options);
-    run["scene"] = std::filesystem::absolute(options.scene).lexically_normal().string();
-    run["scene files"] = hash_of_scene();
+    run["scene"] = absolute(options.scene);
+    run["scene files"] = hash_of_scene(options.scene);
+    run["kernel"] = hash_of_kernel(options.kernel_dir);
+    run["--kernel-dir"] = options.kernel_dir.empty() ? "" : absolute(options.kernel_dir);
     run["samples"] = options.spp.value_or(0);
     run["outputs"] = options.outputs;
     run["exposure"] = options.exposure;
+    run["--aov"] = options.layers;
+    run["--time"] = options.stop.seconds.value_or(0);
+    run["--target-error"] = options.stop.error.value_or(0);
     run["part"] = options.checkpoint.part;
     run["parts"] = options.checkpoint.parts;
     return run.dump();
@@ -116,12 +162,15 @@ void take_run(const Checkpoint &checkpoint, const std::string &path, Options &op
         take_picture_options(run, options);
         options.scene = run.at("scene");
         options.lanes = checkpoint.layout.lanes;
-        if (!options.spp && !options.stop.any() && run.at("samples") > 0)
-            options.spp = run.at("samples").get<int>();
+        if (options.kernel_dir.empty())
+            options.kernel_dir = run.at("--kernel-dir");
+        take_end(run, path, options);
         if (options.outputs.empty()) {
             options.outputs = run.at("outputs").get<std::vector<std::string>>();
             options.exposure = run.at("exposure");
         }
+        if (options.layers.empty())
+            set_layers(run.at("--aov").get<std::set<std::string>>(), options);
         options.checkpoint.part = run.at("part");
         options.checkpoint.parts = run.at("parts");
         if (checkpoint.layout.measured)
@@ -146,6 +195,8 @@ void check_same_run(const std::string &a_path, const std::string &a_run, const s
         if (key == "scene files")
             throw InputError({a_path, 0},
                              "is of another scene than " + b_path + " (a file of it has changed)");
+        if (key == "kernel")
+            throw InputError({a_path, 0}, "was made by another kernel than " + b_path);
         throw InputError({a_path, 0}, fmt::format("was made with {} {}, {} with {}", key,
                                                   value.dump(), b_path, other.dump()));
     }

@@ -515,10 +515,7 @@ void finish_options(Options &options, const RawOptions &raw) {
     options.test.effect = *parse_effect(raw.effect);
     if (options.command == Command::test && options.test.marked.empty())
         options.test.marked = fs::path(options.test.reference).stem().string() + "_differs.png";
-    options.layers.insert(raw.layers.begin(), raw.layers.end());
-    for (const std::string &layer : options.layers)
-        if (const auto aov = aov_of(layer))
-            options.aovs.push_back(*aov);
+    set_layers({raw.layers.begin(), raw.layers.end()}, options);
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);
@@ -560,7 +557,9 @@ void check_combination(const Options &options, const RawOptions &raw) {
     if (raw.precision == "double" && raw.lanes != "auto" && raw.lanes != "1")
         refuse("--precision double traces one path at a time, it excludes --lanes " + raw.lanes);
     std::vector<std::string> files = options.outputs;
-    for (const std::string &file : {options.stats, raw.profile})
+    const CheckpointOptions &checkpoint = options.checkpoint;
+    for (const std::string &file : {options.stats, raw.profile,
+                                    checkpoint.file.empty() ? checkpoint.resumed : checkpoint.file})
         if (!file.empty() && file != bare_profile)
             files.push_back(file);
     std::set<std::string> seen;
@@ -576,6 +575,14 @@ void print_mistake(std::string text) {
 }
 
 } // namespace
+
+void set_layers(const std::set<std::string> &layers, Options &options) {
+    options.layers = layers;
+    options.aovs.clear();
+    for (const std::string &layer : layers)
+        if (const auto aov = aov_of(layer))
+            options.aovs.push_back(*aov);
+}
 
 ParseResult parse_options(int argc, const char *const *argv) {
     Options options;

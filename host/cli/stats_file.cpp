@@ -25,6 +25,8 @@ const char *ended_by(const RenderResult &result) {
         return "time";
     case StopReason::error:
         return "error";
+    case StopReason::unknown_error:
+        return "unknown error";
     case StopReason::samples:
         break;
     }
@@ -86,7 +88,8 @@ std::string summary(const RenderResult &result, const RunTimes &times,
         files += (files.empty() ? "" : ", ") + path;
     const double pixels = static_cast<double>(s.width) * s.height;
     // The paths include those of a border around the picture.
-    const double samples = std::min(s.paths / pixels, static_cast<double>(s.spp));
+    const double samples =
+        std::min((s.paths_before + s.paths) / pixels, static_cast<double>(s.spp));
     const std::string gaps =
         result.gaps == 0 ? ""
                          : fmt::format("; {:.3g}% of the pixels have no sample yet and show their "
@@ -113,6 +116,8 @@ std::string reason_line(const RenderResult &result, const RunTimes &times) {
         reason = "the time is up";
     else if (result.ended_by == StopReason::error)
         reason = "target reached";
+    else if (result.ended_by == StopReason::unknown_error)
+        reason = "its error cannot be measured, as all its sums were clamped";
     std::string line = fmt::format("{}{} after {:.3g} s, {} samples a pixel", error, reason,
                                    times.total, result.stats.spp);
     if (!error.empty())

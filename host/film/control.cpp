@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tbb/parallel_for.h>
 #include <vector>
@@ -134,16 +135,23 @@ double mean_relative_variance(const Image &image, const Image &variance) {
     const auto height = static_cast<std::size_t>(image.height);
     // Row by row, so that the sum does not depend on the threads.
     std::vector<double> rows(height, 0.0);
+    std::vector<std::size_t> known(height, 0);
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         for (std::size_t x = 0; x < width; ++x)
-            for (std::size_t c = 0; c < colours; ++c)
-                rows[y] +=
-                    weight_at(image, variance, x, y, c) *
-                    double{variance.f32[(y * width + x) * static_cast<std::size_t>(image.channels) +
-                                        c]};
+            for (std::size_t c = 0; c < colours; ++c) {
+                const double value =
+                    variance.f32[(y * width + x) * static_cast<std::size_t>(image.channels) + c];
+                if (std::isinf(value))
+                    continue;
+                rows[y] += weight_at(image, variance, x, y, c) * value;
+                ++known[y];
+            }
     });
+    const std::size_t values = std::accumulate(known.begin(), known.end(), std::size_t{0});
+    if (values == 0 && !variance.f32.empty())
+        return std::numeric_limits<double>::infinity();
     return std::accumulate(rows.begin(), rows.end(), 0.0) /
-           static_cast<double>(std::max<std::size_t>(width * height, 1) * colours);
+           static_cast<double>(std::max<std::size_t>(values, 1));
 }
 
 } // namespace clrender

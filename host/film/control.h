@@ -72,7 +72,8 @@ VarianceFactor variance_factor(const ControlSums &control, const Image &image,
                                const Image &variance);
 
 /// The mean over pixels and colour channels of variance / (value^2 + .01): the expected relMSE of
-/// `image` by its noise; what is systematically wrong is not part of it.
+/// `image` by its noise; what is systematically wrong is not part of it. Values of infinite
+/// variance (of pixels whose sums were clamped) do not count, unless all are.
 double mean_relative_variance(const Image &image, const Image &variance);
 
 } // namespace clrender

@@ -1,5 +1,6 @@
 #include "inner_pictures.h"
 
+#include <chrono>
 #include <utility>
 
 namespace clrender {
@@ -27,6 +28,30 @@ Image first_channels(const Image &image, int count) {
 
 } // namespace
 
+namespace {
+
+/// How one of `left` pictures is rendered that share the time which is left. It is no part of a
+/// checkpoint, and is rendered anew where a render goes on.
+RenderOptions options_of_inner(const RenderOptions &options, std::size_t left) {
+    using Clock = std::chrono::steady_clock;
+    RenderOptions how = options;
+    how.layers = {};
+    how.with_samples = false;
+    how.with_variance = options.target_error > 0;
+    how.profile = nullptr;
+    how.seconds_to_write = {};
+    how.resumed = nullptr;
+    how.checkpoint_due = {};
+    how.write_checkpoint = {};
+    how.part = how.parts = 1;
+    const Clock::time_point now = Clock::now();
+    if (options.deadline > now)
+        how.deadline = now + (options.deadline - now) / static_cast<Clock::rep>(left);
+    return how;
+}
+
+} // namespace
+
 RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &options) {
     if (scene.layers.pictures.empty())
         return render_scene(std::move(scene), options);
@@ -42,16 +67,15 @@ RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &opti
     const bool shares = !moments && (format == PixelFormat::rgb || format == PixelFormat::rgba);
     std::vector<NamedLayer> pictures;
     bool interrupted = false;
-    for (std::size_t i = shares ? 1 : 0; i < layers.pictures.size() && !interrupted; ++i) {
+    // A part has the sums of the picture alone.
+    const std::size_t count = options.parts == 1 ? layers.pictures.size() : 0;
+    for (std::size_t i = shares ? 1 : 0; i < count && !interrupted; ++i) {
         Scene inner = scene;
         inner.layers = {};
         inner.integrator = layers.pictures[i].integrator;
         inner.film.pixel_format = inner_format;
-        RenderOptions how = options;
-        how.layers = {};
-        how.with_variance = how.with_samples = false;
-        how.profile = nullptr;
-        RenderResult result = render_scene(std::move(inner), how);
+        RenderResult result =
+            render_scene(std::move(inner), options_of_inner(options, count - i + 1));
         interrupted = result.interrupted;
         pictures.push_back(named(layers.pictures[i].name, suffixes, std::move(result.image)));
     }

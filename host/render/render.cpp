@@ -120,7 +120,7 @@ public:
     [[nodiscard]] int samples() const override { return done_; }
     RenderResult read() override;
     /// The last picture; takes it away.
-    RenderResult finish() { return result_of(std::move(*picture_)); }
+    RenderResult finish();
     /// What is left for the profile, if there is one, after all else.
     void complete_profile();
     [[nodiscard]] bool in_one_piece() const { return tracer_->in_one_piece(); }
@@ -263,6 +263,8 @@ PathTracer::Ended Rendering::begin_with_work() {
     if (options_.resumed) {
         tracer_->load(*options_.resumed);
         done = options_.resumed->work;
+        for (const FilmPixel &pixel : options_.resumed->film.pixels)
+            stats_.paths_before += pixel.samples;
     }
     const WorkGrid grid = tracer_->layout(format_).grid;
     int end = 0;
@@ -339,8 +341,14 @@ void Rendering::set_finish_seconds(StoppingRule &rule) {
     read_film();
     const RenderResult result = read();
     const double read_seconds = now() - start;
-    rule.set_finish_seconds(
-        read_seconds + (options_.seconds_to_write ? options_.seconds_to_write(result.image) : 0));
+    const double write_seconds =
+        options_.seconds_to_write ? options_.seconds_to_write(result.image) : 0;
+    log::detail(fmt::format("for the deadline: reading the film takes {:.3f} s, writing {:.3f} s",
+                            read_seconds, write_seconds));
+    const double checkpoint_start = now();
+    if (options_.write_checkpoint)
+        write_checkpoint(); // one more comes at the end
+    rule.set_finish_seconds(read_seconds + write_seconds + now() - checkpoint_start);
 }
 
 bool Rendering::advance(int samples) {
@@ -361,8 +369,15 @@ RenderResult Rendering::read() {
     return result_of(Picture(*picture_));
 }
 
+RenderResult Rendering::finish() {
+    RenderResult result = result_of(std::move(*picture_));
+    result.layers = std::move(layer_result_.layers);
+    result.layer_metadata = std::move(layer_result_.layer_metadata);
+    return result;
+}
+
 RenderResult Rendering::result_of(Picture &&picture) {
-    RenderResult result = std::move(layer_result_);
+    RenderResult result;
     result.interrupted = stopped_;
     if (rule_)
         result.ended_by = rule_->reason();
@@ -386,7 +401,9 @@ RenderResult Rendering::result_of(Picture &&picture) {
     for (Image *image : {&result.image, &result.samples, &result.variance})
         trim(*image, flat_.border);
     if (options_.with_variance)
-        result.error.relative_variance = mean_relative_variance(result.image, result.variance);
+        result.error.relative_variance =
+            result.gaps > 0 ? std::numeric_limits<double>::infinity()
+                            : mean_relative_variance(result.image, result.variance);
     return result;
 }
 

@@ -70,6 +70,7 @@ struct RenderStats {
     int width = 0, height = 0;
     int spp = 0; ///< samples every pixel has
     double paths = 0, rays = 0;
+    double paths_before = 0; ///< of the checkpoint that it went on from
     double seconds_device = 0, seconds_build = 0, seconds_compile = 0, seconds_upload = 0,
            seconds_render = 0;
     std::string kernel_features;

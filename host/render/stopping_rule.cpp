@@ -16,6 +16,8 @@ constexpr double largest_exponent = 2;
 
 /// The first measurement of the error: the least number of samples whose scatter says something.
 constexpr int first_measured = 4;
+/// Of a picture that has no finite error with so many samples it stays unknown.
+constexpr int most_unknown = 256;
 /// Samples beyond those that the law asks for, so that most renders need not be gone on with.
 constexpr double caution = 1.03;
 /// The law is trusted up to so many times the samples that it is known for.
@@ -100,6 +102,8 @@ std::optional<StoppingRule::Step> StoppingRule::next(double now) {
     const bool by_time = std::isfinite(limits_.deadline);
     if (by_error && is_measured_ && law_.error_at(shown_) <= limits_.error)
         return stop(StopReason::error);
+    if (by_error && is_measured_ && shown_ >= most_unknown && !std::isfinite(law_.error_at(shown_)))
+        return stop(StopReason::unknown_error);
     if (shown_ >= limits_.samples)
         return stop(StopReason::samples);
     if (shown_ == 0) {

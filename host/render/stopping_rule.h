@@ -15,7 +15,12 @@ struct StopLimits {
     double error = 0; ///< relative error of the picture (ErrorEstimate); 0: any
 };
 
-enum class StopReason { samples, time, error };
+enum class StopReason {
+    samples,
+    time,
+    error,
+    unknown_error, ///< it cannot be measured, with however many samples
+};
 
 /// The law E^2 = c / N^p of a picture's relative error, from what was measured.
 class ErrorLaw {

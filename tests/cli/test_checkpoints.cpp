@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <random>
 
 using namespace clrender;
@@ -163,6 +164,10 @@ TEST_CASE("Parts add up to the bits of a single render, in any order") {
     runs.must({"resume", "m.exr", "-s", "192", "-o", "more.exr"});
     CHECK(runs.pixels("more.exr") == runs.in_one_go("192"));
 
+    // Shares of tiles become shares of blocks.
+    const ProgramResult longer = runs.run({"resume", "scene.part2of7.exr", "-s", "1024"});
+    CHECK(longer.exit_code == 2);
+    CHECK_THAT(longer.err, Catch::Contains("of 1024 samples"));
     const ProgramResult twice = runs.run(
         {"merge", "scene.part1of2.exr", "scene.part2of2.exr", "scene.part1of2.exr", "-o", "x.exr"});
     CHECK(twice.exit_code == 2);
@@ -197,11 +202,110 @@ TEST_CASE("A checkpoint of something else is refused by name") {
     refused({"resume", "c.exr", "-r", "9x9"}, "--resolution");
     refused({"resume", "c.exr", "--max-depth", "2"}, "--max-depth");
     refused({"resume", "c.exr", "--target-error", "1%"}, "variances");
+    refused({"resume", "c.exr", "--rr-depth", "auto"}, "--rr-depth");
+    refused({"resume", "c.exr", "--specular-connections", "off"}, "--specular-connections");
+    refused({"resume", "c.exr", "-o", "./c.exr"}, "written twice");
+    refused({"scene.xml", "-o", "d.exr", "--checkpoint", "d.exr"}, "written twice");
     refused({"resume", "one.exr"}, "one.exr");
     refused({"resume", "a.exr"}, "no checkpoint");
     refused({"scene.xml", "-s", "20", "--part", "1/2"}, "cannot be dealt");
     runs.folder().write("scene.xml", scene_with("11"));
     refused({"resume", "c.exr", "-s", "32"}, "another scene");
+}
+
+TEST_CASE("A resumed render knows all options and the end of the first one") {
+    const Runs runs;
+    const std::vector<std::string> options = {"--rr-depth", "auto",  "--specular-connections",
+                                              "off",        "--aov", "samples"};
+    const auto with_options = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return arguments;
+    };
+    runs.must(with_options({"scene.xml", "-s", "16", "-o", "a.exr", "--checkpoint", "c.exr"}));
+    runs.must(with_options({"resume", "c.exr", "-s", "16"}));
+    const std::string layers = read_file(runs.folder().path() / "a.exr");
+    const bool has_layer = layers.find("samples.Y") != std::string::npos;
+    CHECK(has_layer);
+    runs.must({"resume", "c.exr"});
+    const bool is_same = read_file(runs.folder().path() / "a.exr") == layers;
+    CHECK(is_same);
+
+    const auto resumed = [&](const char *rule, const char *value) {
+        fs::remove(runs.folder().path() / "c.exr");
+        runs.must({"scene.xml", rule, value, "-o", "a.exr", "--checkpoint", "c.exr"});
+        return Program(runs.folder().path(), {"resume", "c.exr"}).wait();
+    };
+    const ProgramResult by_error = resumed("--target-error", "30%");
+    CHECK(by_error.exit_code == 0);
+    CHECK_THAT(by_error.err, Catch::Contains("target reached"));
+    const ProgramResult by_time = resumed("--time", "0.3");
+    CHECK(by_time.exit_code == 2);
+    CHECK_THAT(by_time.err, Catch::Contains("--time, -s or --target-error"));
+}
+
+TEST_CASE("Files that have changed places are another scene, in another folder the same") {
+    const Runs runs;
+    const std::string part = R"(<scene version="3.0.0"><default name="NAME" value="1"/></scene>)";
+    const auto write_part = [&](const std::string &file, const std::string &name) {
+        std::string text = part;
+        runs.folder().write(file, text.replace(text.find("NAME"), 4, name));
+    };
+    std::string scene = scene_with("10");
+    scene.insert(scene.rfind("</scene>"),
+                 R"(<include filename="a.xml"/><include filename="b.xml"/>)");
+    runs.folder().write("scene.xml", scene);
+    write_part("a.xml", "first");
+    write_part("b.xml", "second");
+    runs.must({"scene.xml", "-s", "64", "--part", "1/2"});
+    fs::create_directory(runs.folder().path() / "other");
+    for (const char *file : {"scene.xml", "a.xml", "b.xml"})
+        fs::copy(runs.folder().path() / file, runs.folder().path() / "other" / file);
+    runs.must({"other/scene.xml", "-s", "64", "--part", "2/2"});
+    runs.must({"merge", "scene.part1of2.exr", "scene.part2of2.exr", "-o", "m.pfm"});
+    write_part("b.xml", "first");
+    write_part("a.xml", "second");
+    const ProgramResult swapped = runs.run({"resume", "scene.part1of2.exr"});
+    CHECK(swapped.exit_code == 2);
+    CHECK_THAT(swapped.err, Catch::Contains("another scene"));
+}
+
+TEST_CASE("A checkpoint of another kernel is refused") {
+    const Runs runs;
+    const fs::path kernels = runs.folder().path() / "kernels";
+    fs::copy(fs::path(CLRENDER_SCENE_DIR).parent_path() / "kernels", kernels,
+             fs::copy_options::recursive);
+    runs.must({"scene.xml", "-s", "16", "-o", "a.exr", "--checkpoint", "c.exr"});
+    std::ofstream(kernels / "lanes.clh", std::ios::app) << "// changed\n";
+    const ProgramResult other = runs.run({"resume", "c.exr", "--kernel-dir", "kernels"});
+    CHECK(other.exit_code == 2);
+    CHECK_THAT(other.err, Catch::Contains("another kernel"));
+}
+
+TEST_CASE("A checkpoint is of the picture, not of those of further integrators") {
+    const Runs runs;
+    std::string scene = scene_with("10");
+    const std::string path =
+        R"(<integrator type="path" name="NAME"><integer name="max_depth" value="4"/></integrator>)";
+    const auto begin = scene.find("<integrator"), end = scene.find("<sensor");
+    std::string inner = path, second = path;
+    inner.replace(inner.find("NAME"), 4, "a");
+    second.replace(second.find("NAME"), 4, "b");
+    second.replace(second.find("\"4\""), 3, "\"2\"");
+    scene.replace(begin, end - begin,
+                  R"(<integrator type="aov"><string name="aovs" value="d:depth"/>)" + inner +
+                      second + "</integrator>");
+    runs.folder().write("scene.xml", scene);
+    runs.must({"scene.xml", "-s", "16", "-o", "a.exr", "--checkpoint", "c.exr"});
+    runs.must({"resume", "c.exr", "-s", "64"});
+    const std::string resumed = read_file(runs.folder().path() / "a.exr");
+    runs.must({"scene.xml", "-s", "64", "-o", "a.exr"});
+    const bool is_same = read_file(runs.folder().path() / "a.exr") == resumed;
+    CHECK(is_same);
+    // An error that is asked for ends all of them.
+    runs.must({"scene.xml", "--target-error", "50%", "-o", "a.exr"});
+    const std::string exact = read_file(runs.folder().path() / "a.exr");
+    const bool has_depth = exact.find("d.T") != std::string::npos;
+    CHECK(has_depth);
 }
 
 TEST_CASE("A damaged checkpoint is refused") {

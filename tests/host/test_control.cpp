@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 using namespace clrender;
@@ -109,4 +110,11 @@ TEST_CASE("the relative variance is that of relMSE, and one bright pixel does no
     const double others = 3 * 64 - 1;
     CHECK(mean_relative_variance(image, variance) ==
           Approx((others * 0.0005 + 5000) / 0.26 / (others + 1)));
+
+    // Of a clamped pixel nothing is known.
+    const float unknown = std::numeric_limits<float>::infinity();
+    variance.f32[3 * 27 + 1] = unknown;
+    CHECK(mean_relative_variance(image, variance) == Approx(0.0005 / 0.26));
+    variance.f32.assign(variance.f32.size(), unknown);
+    CHECK(mean_relative_variance(image, variance) == unknown);
 }

@@ -102,6 +102,21 @@ TEST_CASE("A render by error ends where the error is reached, and little beyond"
             }
 }
 
+TEST_CASE("A render whose error cannot be measured ends") {
+    for (const double unknown :
+         {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+        const Outcome out =
+            render({.samples = 1 << 30, .error = 0.01}, 1e-3, 0, [&](int) { return unknown; });
+        CHECK(out.reason == StopReason::unknown_error);
+        CHECK(out.samples <= 1024);
+    }
+    // With few samples it may be unknown for a while.
+    const Outcome later = render({.samples = 1 << 30, .error = 0.1}, 1e-3, 0, [](int n) {
+        return n < 32 ? std::numeric_limits<double>::infinity() : 1 / std::sqrt(n);
+    });
+    CHECK(later.reason == StopReason::error);
+}
+
 TEST_CASE("The first rule that is reached ends the render") {
     const auto error = [](int n) { return 1 / std::sqrt(n); };
     CHECK(render({.samples = 1 << 30, .deadline = 1, .error = 0.01}, 1e-3, 0, error).reason ==
