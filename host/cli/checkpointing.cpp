@@ -18,8 +18,8 @@ namespace {
 using Json = nlohmann::json;
 
 /// What does not change the picture's bits, or belongs to one part or end of a render alone.
-const std::vector<std::string> free_keys = {"scene",   "samples",  "part",  "parts",
-                                            "outputs", "exposure", "folder"};
+const std::vector<std::string> free_keys = {"scene",   "samples",  "part",   "parts",
+                                            "outputs", "exposure", "layers", "folder"};
 
 /// Of all files that the scene has been read from, whatever their names and order.
 std::string hash_of_scene() {
@@ -95,6 +95,7 @@ std::string describe_run(const Options &options) {
     run["samples"] = options.spp.value_or(0);
     run["outputs"] = options.outputs;
     run["exposure"] = options.exposure;
+    run["layers"] = options.layers;
     run["part"] = options.checkpoint.part;
     run["parts"] = options.checkpoint.parts;
     return run.dump();
@@ -122,6 +123,8 @@ void take_run(const Checkpoint &checkpoint, const std::string &path, Options &op
             options.outputs = run.at("outputs").get<std::vector<std::string>>();
             options.exposure = run.at("exposure");
         }
+        if (options.layers.empty())
+            options.layers = run.value("layers", std::set<std::string>());
         options.checkpoint.part = run.at("part");
         options.checkpoint.parts = run.at("parts");
         if (checkpoint.layout.measured)

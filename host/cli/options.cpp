@@ -124,16 +124,6 @@ const std::vector<std::string> &known_layers() {
     return names;
 }
 
-/// What a layer tells of the camera's first hits, if it does.
-std::optional<Aov> aov_of(const std::string &layer) {
-    static const std::map<std::string, AovType> special = {{"albedo", AovType::reflectance},
-                                                           {"normal", AovType::sh_normal},
-                                                           {"depth", AovType::camera_depth}};
-    const auto found = special.find(layer);
-    const auto type = found != special.end() ? found->second : aov_type_of(layer);
-    return type ? std::optional<Aov>({layer, *type}) : std::nullopt;
-}
-
 std::string check_layer(const std::string &text) {
     const auto &known = known_layers();
     if (std::find(known.begin(), known.end(), text) != known.end())
@@ -516,9 +506,6 @@ void finish_options(Options &options, const RawOptions &raw) {
     if (options.command == Command::test && options.test.marked.empty())
         options.test.marked = fs::path(options.test.reference).stem().string() + "_differs.png";
     options.layers.insert(raw.layers.begin(), raw.layers.end());
-    for (const std::string &layer : options.layers)
-        if (const auto aov = aov_of(layer))
-            options.aovs.push_back(*aov);
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);

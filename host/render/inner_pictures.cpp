@@ -1,5 +1,6 @@
 #include "inner_pictures.h"
 
+#include <chrono>
 #include <utility>
 
 namespace clrender {
@@ -25,21 +26,38 @@ Image first_channels(const Image &image, int count) {
     return result;
 }
 
+using Clock = std::chrono::steady_clock;
+
+/// The end of the first of `count` renders that take what is left until the deadline evenly.
+Clock::time_point share_of_time(Clock::time_point deadline, std::size_t count) {
+    const Clock::time_point now = Clock::now();
+    return now + (deadline - now) / static_cast<Clock::rep>(count);
+}
+
+/// The first one's picture in RGBA holds that in RGB.
+bool first_is_picture(const Scene &scene) {
+    const PixelFormat format = scene.film.pixel_format;
+    return !scene.layers.moments && (format == PixelFormat::rgb || format == PixelFormat::rgba);
+}
+
 } // namespace
+
+bool takes_several_renders(const Scene &scene) {
+    return scene.layers.pictures.size() > (first_is_picture(scene) ? 1 : 0);
+}
 
 RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &options) {
     if (scene.layers.pictures.empty())
         return render_scene(std::move(scene), options);
     const SceneLayers layers = scene.layers;
     const bool moments = layers.moments;
+    const bool shares = first_is_picture(scene);
     const PixelFormat format = scene.film.pixel_format;
     const PixelFormat inner_format = moments ? PixelFormat::xyz : PixelFormat::rgba;
     const std::vector<std::string> suffixes = moments
                                                   ? std::vector<std::string>{"X", "Y", "Z"}
                                                   : std::vector<std::string>{"R", "G", "B", "A"};
 
-    // The first one's picture in RGBA holds that in RGB.
-    const bool shares = !moments && (format == PixelFormat::rgb || format == PixelFormat::rgba);
     std::vector<NamedLayer> pictures;
     bool interrupted = false;
     for (std::size_t i = shares ? 1 : 0; i < layers.pictures.size() && !interrupted; ++i) {
@@ -49,8 +67,11 @@ RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &opti
         inner.film.pixel_format = inner_format;
         RenderOptions how = options;
         how.layers = {};
-        how.with_variance = how.with_samples = false;
+        how.with_variance = options.target_error > 0;
+        how.with_samples = false;
         how.profile = nullptr;
+        if (options.deadline != Clock::time_point{})
+            how.deadline = share_of_time(options.deadline, layers.pictures.size() - i + 1);
         RenderResult result = render_scene(std::move(inner), how);
         interrupted = result.interrupted;
         pictures.push_back(named(layers.pictures[i].name, suffixes, std::move(result.image)));

@@ -120,7 +120,7 @@ public:
     [[nodiscard]] int samples() const override { return done_; }
     RenderResult read() override;
     /// The last picture; takes it away.
-    RenderResult finish() { return result_of(std::move(*picture_)); }
+    RenderResult finish();
     /// What is left for the profile, if there is one, after all else.
     void complete_profile();
     [[nodiscard]] bool in_one_piece() const { return tracer_->in_one_piece(); }
@@ -361,8 +361,17 @@ RenderResult Rendering::read() {
     return result_of(Picture(*picture_));
 }
 
+/// The layers are moved into the last result alone: checkpoints and measurements of a render on its
+/// way have the picture only.
+RenderResult Rendering::finish() {
+    RenderResult result = result_of(std::move(*picture_));
+    result.layers = std::move(layer_result_.layers);
+    result.layer_metadata = std::move(layer_result_.layer_metadata);
+    return result;
+}
+
 RenderResult Rendering::result_of(Picture &&picture) {
-    RenderResult result = std::move(layer_result_);
+    RenderResult result;
     result.interrupted = stopped_;
     if (rule_)
         result.ended_by = rule_->reason();
