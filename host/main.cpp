@@ -20,16 +20,20 @@
 #include "render/profile.h"
 #include "render/profile_trace.h"
 #include "render/render.h"
+#include "scene/aov.h"
 #include "scene/film_border.h"
 #include "scene/limits.h"
 #include "scene/load_scene.h"
 #include "selftest/self_test.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fmt/core.h>
 #include <future>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
@@ -80,6 +84,20 @@ void apply_options(const cli::Options &options, Scene &scene) {
     }
 }
 
+/// The layers of --aov that tell what the camera sees first.
+std::vector<Aov> aovs_of(const std::set<std::string> &layers) {
+    static const std::map<std::string, AovType> special = {{"albedo", AovType::reflectance},
+                                                           {"normal", AovType::sh_normal},
+                                                           {"depth", AovType::camera_depth}};
+    std::vector<Aov> aovs;
+    for (const std::string &layer : layers) {
+        const auto found = special.find(layer);
+        if (const auto type = found != special.end() ? found->second : aov_type_of(layer))
+            aovs.push_back({layer, *type});
+    }
+    return aovs;
+}
+
 RenderOptions render_options(const cli::Options &options, cli::Progress &progress,
                              Profile &profile) {
     RenderOptions r;
@@ -94,7 +112,7 @@ RenderOptions render_options(const cli::Options &options, cli::Progress &progres
     r.target_error = options.stop.error.value_or(0);
     r.with_variance = options.layers.count("variance") != 0 || options.stop.error;
     r.with_samples = options.layers.count("samples") != 0;
-    r.layers.aovs = options.aovs;
+    r.layers.aovs = aovs_of(options.layers);
     r.layers.matte = options.layers.count("cryptomatte") != 0;
     r.profile = options.profile ? &profile : nullptr;
     r.band_rows = options.band_rows;
@@ -119,6 +137,15 @@ std::map<std::string, std::string> metadata(const cli::Options &options, const s
 /// What a picture's file format cannot hold is told before the picture is made.
 void check_outputs(const cli::Options &options, const Scene &scene) {
     constexpr int most_channels = 4;
+    const auto holds_layers = [](const std::string &path) {
+        return std::filesystem::path(path).extension() == ".exr";
+    };
+    std::set<std::string> layers = options.layers;
+    if (!options.checkpoint.file.empty())
+        layers.erase("variance"); // which the checkpoint has
+    if (!layers.empty() &&
+        std::none_of(options.outputs.begin(), options.outputs.end(), holds_layers))
+        log::warn("the layers of --aov are left out: they need a picture as an .exr file (-o)");
     for (const std::string &path : options.outputs) {
         const std::string reason =
             why_too_large(path, scene.film.crop_width, scene.film.crop_height, most_channels);
@@ -182,6 +209,10 @@ void add_checkpoints(const cli::Options &options, const Scene &scene,
     if (sampled_border(scene.film) > 0)
         throw InputError({options.scene, 0},
                          "the film has a sample_border, expected none beside --checkpoint");
+    if (takes_several_renders(scene))
+        throw InputError({options.scene, 0},
+                         "the scene's aov or moment has pictures that are rendered for themselves, "
+                         "expected one picture beside --checkpoint");
     if (checkpoint.parts > 1 && whole_blocks(scene.sample_count) != scene.sample_count)
         throw InputError({options.scene, 0},
                          fmt::format("{} samples cannot be dealt to parts, expected 16, 32 or a "

@@ -124,16 +124,6 @@ const std::vector<std::string> &known_layers() {
     return names;
 }
 
-/// What a layer tells of the camera's first hits, if it does.
-std::optional<Aov> aov_of(const std::string &layer) {
-    static const std::map<std::string, AovType> special = {{"albedo", AovType::reflectance},
-                                                           {"normal", AovType::sh_normal},
-                                                           {"depth", AovType::camera_depth}};
-    const auto found = special.find(layer);
-    const auto type = found != special.end() ? found->second : aov_type_of(layer);
-    return type ? std::optional<Aov>({layer, *type}) : std::nullopt;
-}
-
 std::string check_layer(const std::string &text) {
     const auto &known = known_layers();
     if (std::find(known.begin(), known.end(), text) != known.end())

@@ -4,7 +4,6 @@
 #include "cli/checkpoint_options.h"
 #include "cli/stop_options.h"
 #include "config/sampling_options.h"
-#include "scene/aov.h"
 
 #include <cstdint>
 #include <map>
@@ -55,7 +54,6 @@ struct Options {
     std::map<std::string, std::string> defines;
     double exposure = 0;          ///< stops, for the 8-bit formats
     std::set<std::string> layers; ///< --aov: of the EXR files, beside the picture
-    std::vector<Aov> aovs;        ///< those of them that tell what the camera sees first
     SamplingOptions sampling;
     StopOptions stop;
     CheckpointOptions checkpoint;

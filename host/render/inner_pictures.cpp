@@ -26,9 +26,11 @@ Image first_channels(const Image &image, int count) {
     return result;
 }
 
-} // namespace
-
-namespace {
+/// The first one's picture in RGBA holds that in RGB.
+bool first_is_picture(const Scene &scene) {
+    const PixelFormat format = scene.film.pixel_format;
+    return !scene.layers.moments && (format == PixelFormat::rgb || format == PixelFormat::rgba);
+}
 
 /// How one of `left` pictures is rendered that share the time which is left. It is no part of a
 /// checkpoint, and is rendered anew where a render goes on.
@@ -52,19 +54,22 @@ RenderOptions options_of_inner(const RenderOptions &options, std::size_t left) {
 
 } // namespace
 
+bool takes_several_renders(const Scene &scene) {
+    return scene.layers.pictures.size() > (first_is_picture(scene) ? 1 : 0);
+}
+
 RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &options) {
     if (scene.layers.pictures.empty())
         return render_scene(std::move(scene), options);
     const SceneLayers layers = scene.layers;
     const bool moments = layers.moments;
+    const bool shares = first_is_picture(scene);
     const PixelFormat format = scene.film.pixel_format;
     const PixelFormat inner_format = moments ? PixelFormat::xyz : PixelFormat::rgba;
     const std::vector<std::string> suffixes = moments
                                                   ? std::vector<std::string>{"X", "Y", "Z"}
                                                   : std::vector<std::string>{"R", "G", "B", "A"};
 
-    // The first one's picture in RGBA holds that in RGB.
-    const bool shares = !moments && (format == PixelFormat::rgb || format == PixelFormat::rgba);
     std::vector<NamedLayer> pictures;
     bool interrupted = false;
     // A part has the sums of the picture alone.

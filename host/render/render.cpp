@@ -369,6 +369,8 @@ RenderResult Rendering::read() {
     return result_of(Picture(*picture_));
 }
 
+/// The layers are moved into the last result alone: checkpoints and measurements of a render on its
+/// way have the picture only.
 RenderResult Rendering::finish() {
     RenderResult result = result_of(std::move(*picture_));
     result.layers = std::move(layer_result_.layers);

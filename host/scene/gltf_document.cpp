@@ -4,6 +4,7 @@
 #include "../log.h"
 #include "../memory_limit.h"
 #include "gltf_json.h"
+#include "gltf_types.h"
 #include "gltf_uri.h"
 
 #include <fmt/format.h>
@@ -283,6 +284,7 @@ Document read_document(const std::string &path) {
     json root = parse_json(chunks.text, path, !chunks.is_binary);
     check_version(root, document);
     check_extensions(root, document);
+    check_types(root, document);
     take_buffers(root, chunks, document);
     take_images(root, document);
     document.has_animations = array_of(root, "animations") != nullptr;

@@ -1,6 +1,7 @@
 /// Checkpoints and parts: the same bits as a render in one go, and what is refused.
 
 #include "image/image.h"
+#include "image/layers.h"
 #include "program.h"
 
 #include <catch2/catch.hpp>
@@ -100,6 +101,48 @@ TEST_CASE("The variance goes on with the picture") {
         return text.substr(text.find("\"error\""), 150);
     };
     CHECK(error("a.json") == error("one.json"));
+}
+
+TEST_CASE("Layers are written whatever ends a render, and go on with it") {
+    const Runs runs;
+    const auto normal = [&](const char *name) {
+        const auto layer = read_exr_layer((runs.folder().path() / name).string(), "normal");
+        return layer ? layer->f32 : std::vector<float>();
+    };
+    runs.must({"scene.xml", "-s", "64", "--aov", "normal", "-o", "one.exr"});
+    REQUIRE(!normal("one.exr").empty());
+    runs.must({"scene.xml", "-s", "16", "--aov", "normal", "-o", "a.exr", "--checkpoint", "c.exr"});
+    CHECK(!normal("a.exr").empty());
+    runs.must({"resume", "c.exr", "-s", "64"});
+    CHECK(normal("a.exr") == normal("one.exr"));
+    runs.must({"scene.xml", "--time", "1s", "--aov", "normal", "-o", "t.exr"});
+    CHECK(!normal("t.exr").empty());
+
+    const ProgramResult without =
+        runs.run({"scene.xml", "-s", "1", "--aov", "normal", "-o", "a.png"});
+    CHECK(without.exit_code == 0);
+    CHECK_THAT(without.err, Catch::Contains("the layers of --aov are left out"));
+}
+
+TEST_CASE("Pictures inside of aov share the time, and exclude checkpoints") {
+    const Runs runs;
+    std::string scene = scene_with("10");
+    const std::string path = R"(<integrator type="path">)";
+    scene.replace(scene.find(path), path.size(),
+                  R"(<integrator type="aov"><string name="aovs" value=""/>
+                     <integrator type="direct" name="b"/><integrator type="path" name="a">)");
+    const std::string end = "</integrator>";
+    scene.insert(scene.find(end), end);
+    runs.folder().write("two.xml", scene);
+    runs.must({"two.xml", "--time", "2s", "-o", "t.exr", "--stats", "t.json"});
+    const std::string stats = read_file(runs.folder().path() / "t.json");
+    // A picture that took all the time would leave the next one a single sample.
+    const std::string spp = "\"spp\": ";
+    CHECK(std::stoi(stats.substr(stats.find(spp) + spp.size())) > 16);
+
+    const ProgramResult both = runs.run({"two.xml", "-o", "t.exr", "--checkpoint", "c.exr"});
+    CHECK(both.exit_code == 2);
+    CHECK_THAT(both.err, Catch::Contains("two.xml: the scene's aov or moment has pictures"));
 }
 
 TEST_CASE("A render that is killed at any time goes on to the same bits") {
