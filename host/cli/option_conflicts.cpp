@@ -2,8 +2,19 @@
 
 #include <filesystem>
 #include <fmt/core.h>
+#include <set>
 
 namespace clrender::cli {
+
+std::optional<std::string> conflict_of_merge(const CLI::App &app) {
+    const std::set<std::string> taken = {"--output", "--exposure", "--max-memory", "--quiet",
+                                         "--verbose"};
+    for (const CLI::Option *option : app.get_options())
+        if (option->count() > 0 && taken.count(option->get_name()) == 0)
+            return fmt::format("merge takes no {}: its files know how they were rendered",
+                               option->get_name());
+    return std::nullopt;
+}
 
 std::optional<std::string> conflict_of_ends(const Options &options, bool with_profile) {
     const CheckpointOptions &checkpoint = options.checkpoint;

@@ -12,4 +12,7 @@ namespace clrender::cli {
 /// nothing. `with_profile`: --profile is among them.
 std::optional<std::string> conflict_of_ends(const Options &options, bool with_profile);
 
+/// Why an option that was given has no meaning for `merge`, which only adds up and writes.
+std::optional<std::string> conflict_of_merge(const CLI::App &app);
+
 } // namespace clrender::cli

@@ -601,6 +601,9 @@ ParseResult parse_options(int argc, const char *const *argv) {
                           : merge->parsed()   ? Command::merge
                                               : Command::render;
         check_combination(options, raw);
+        if (options.command == Command::merge)
+            if (const auto conflict = conflict_of_merge(app))
+                throw CLI::ParseError(*conflict, CLI::ExitCodes::ValidationError);
     } catch (const CLI::Success &help_or_version) {
         return {std::nullopt, app.exit(help_or_version)};
     } catch (const CLI::ParseError &mistake) {
