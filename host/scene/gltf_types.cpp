@@ -106,6 +106,12 @@ public:
                                                   shown(*found), expected(member)));
     }
 
+    /// An object all of whose members are indices.
+    void check_indices(const json &object, const std::string &place) const {
+        for (auto member = object.begin(); member != object.end(); ++member)
+            check(object, place, {{member.key().c_str(), Type::index}});
+    }
+
     /// The objects of an array that check() has seen; `also` looks at what lies in each.
     template <typename Also>
     void each(const json &object, const std::string &before, const char *list,
@@ -189,7 +195,10 @@ void check_types(const json &root, const Document &document) {
     types.each(root, "", "meshes", {{"primitives", Type::objects}},
                [&](const json &mesh, const std::string &place) {
                    types.each(mesh, place + ".", "primitives", primitive_members,
-                              [](const json &, const std::string &) {});
+                              [&](const json &primitive, const std::string &own) {
+                                  if (primitive.contains("attributes"))
+                                      types.check_indices(primitive["attributes"], own);
+                              });
                });
     types.each(root, "", "materials", material_members,
                [&](const json &material, const std::string &place) {

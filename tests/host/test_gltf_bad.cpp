@@ -73,6 +73,7 @@ TEST_CASE("wrong glTF files are refused with what is wrong", "[gltf]") {
         {"/scenes/0/nodes/0", 0.5, "scenes[0]: its \"nodes\" is [0.5,1,2]"},
         {"/scenes", json::object(), "its \"scenes\" is {}, expected an array of objects"},
         {"/materials/0/doubleSided", 1, "its \"doubleSided\" is 1, expected true or false"},
+        {"/meshes/0/primitives/0/attributes/NORMAL", -1, "primitives[0]: its \"NORMAL\" is -1"},
         {"/meshes/0/primitives/0/material", true, "meshes[0].primitives[0]: its \"material\""},
         {"/nodes/0/matrix", {1, 2, 3}, "matrix has 3 numbers, expected 16"},
         {"/nodes/0/rotation", {0, 0, 0, 0}, "rotation has no length"},
