@@ -170,7 +170,7 @@ void take_run(const Checkpoint &checkpoint, const std::string &path, Options &op
             options.exposure = run.at("exposure");
         }
         if (options.layers.empty())
-            set_layers(run.at("--aov").get<std::set<std::string>>(), options);
+            options.layers = run.at("--aov").get<std::set<std::string>>();
         options.checkpoint.part = run.at("part");
         options.checkpoint.parts = run.at("parts");
         if (checkpoint.layout.measured)

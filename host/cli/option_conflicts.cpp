@@ -45,4 +45,12 @@ std::optional<std::string> conflict_of_ends(const Options &options, bool with_pr
     return std::nullopt;
 }
 
+std::optional<std::string> conflict_of_files(const std::vector<std::string> &files) {
+    std::set<std::string> seen;
+    for (const std::string &file : files)
+        if (!seen.insert(std::filesystem::path(file).lexically_normal().string()).second)
+            return fmt::format("'{}' is to be written twice", file);
+    return std::nullopt;
+}
+
 } // namespace clrender::cli

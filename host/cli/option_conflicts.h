@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace clrender::cli {
 
@@ -14,5 +15,8 @@ std::optional<std::string> conflict_of_ends(const Options &options, bool with_pr
 
 /// Why an option that was given has no meaning for `merge`, which only adds up and writes.
 std::optional<std::string> conflict_of_merge(const CLI::App &app);
+
+/// What is to be written to one file twice.
+std::optional<std::string> conflict_of_files(const std::vector<std::string> &files);
 
 } // namespace clrender::cli

@@ -505,7 +505,7 @@ void finish_options(Options &options, const RawOptions &raw) {
     options.test.effect = *parse_effect(raw.effect);
     if (options.command == Command::test && options.test.marked.empty())
         options.test.marked = fs::path(options.test.reference).stem().string() + "_differs.png";
-    set_layers({raw.layers.begin(), raw.layers.end()}, options);
+    options.layers.insert(raw.layers.begin(), raw.layers.end());
     for (const std::string &define : raw.defines) {
         const std::size_t equals = define.find('=');
         options.defines[define.substr(0, equals)] = define.substr(equals + 1);
@@ -552,10 +552,8 @@ void check_combination(const Options &options, const RawOptions &raw) {
                                     checkpoint.file.empty() ? checkpoint.resumed : checkpoint.file})
         if (!file.empty() && file != bare_profile)
             files.push_back(file);
-    std::set<std::string> seen;
-    for (const std::string &file : files)
-        if (!seen.insert(fs::path(file).lexically_normal().string()).second)
-            refuse(fmt::format("'{}' is to be written twice", file));
+    if (const auto conflict = conflict_of_files(files))
+        refuse(*conflict);
 }
 
 /// One line, whatever CLI11 wrote.
@@ -565,14 +563,6 @@ void print_mistake(std::string text) {
 }
 
 } // namespace
-
-void set_layers(const std::set<std::string> &layers, Options &options) {
-    options.layers = layers;
-    options.aovs.clear();
-    for (const std::string &layer : layers)
-        if (const auto aov = aov_of(layer))
-            options.aovs.push_back(*aov);
-}
 
 ParseResult parse_options(int argc, const char *const *argv) {
     Options options;

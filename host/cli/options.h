@@ -81,9 +81,6 @@ struct ParseResult {
     int exit_code = 0;
 };
 
-/// Sets `layers` and `aovs` to what --aov names.
-void set_layers(const std::set<std::string> &layers, Options &options);
-
 ParseResult parse_options(int argc, const char *const *argv);
 
 } // namespace clrender::cli
