@@ -3,6 +3,7 @@
 /// transparency", 2015; specification 1.2.0): ids are hashes of names, and each pixel has pairs of
 /// an id and its coverage.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -24,7 +25,7 @@ struct MattePair {
 };
 
 /// Pairs of a pixel that are written.
-inline constexpr int matte_ranks = 6;
+inline constexpr std::size_t matte_ranks = 6;
 
 /// Ranks the pairs of a pixel by their coverage, weight / `total`, and puts the first matte_ranks
 /// of them, id and coverage, into `out`; zeros behind the last. `ids` by name.

@@ -112,7 +112,7 @@ template <class T> std::size_t bytes_of(const std::vector<T> &array) {
 
 /// Flattens a parsed scene, all but the hierarchy: what the kernel has to know is known then. Warns
 /// of scenes without light.
-FlatScene flatten(const Scene &scene, const SamplingOptions &options = {});
+FlatScene flatten(const Scene &given, const SamplingOptions &options = {});
 
 /// Builds the hierarchy over the triangles and spheres that need one. Warns of degenerate ones.
 void build_hierarchy(FlatScene &flat);

@@ -46,16 +46,16 @@ Image read_image(const std::string &path, const SourceLocation &referrer, bool r
     return decode_image(read_input_file(path, referrer), path, referrer, raw);
 }
 
-Image decode_image(std::string_view bytes, const std::string &path, const SourceLocation &referrer,
+Image decode_image(std::string_view bytes, const std::string &name, const SourceLocation &referrer,
                    bool raw) {
     const bool is_named = !referrer.file.empty();
     std::string reason;
     try {
         std::vector<std::string> remarks;
-        Image image = decode(bytes, path, raw, remarks);
+        Image image = decode(bytes, name, raw, remarks);
         for (const std::string &remark : remarks)
-            log::warn(is_named ? referrer : SourceLocation{path, 0},
-                      is_named ? path + ": " + remark : remark);
+            log::warn(is_named ? referrer : SourceLocation{name, 0},
+                      is_named ? name + ": " + remark : remark);
         return image;
     } catch (const image_format::FormatError &error) {
         reason = error.what();
@@ -63,8 +63,8 @@ Image decode_image(std::string_view bytes, const std::string &path, const Source
         reason = "does not fit into memory";
     }
     if (!is_named)
-        throw InputError({path, 0}, reason);
-    throw InputError(referrer, path + ": " + reason);
+        throw InputError({name, 0}, reason);
+    throw InputError(referrer, name + ": " + reason);
 }
 
 std::optional<Image> read_exr_layer(const std::string &path, const std::string &name) {

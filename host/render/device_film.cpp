@@ -21,7 +21,7 @@ DeviceFilm::DeviceFilm(const cl::Context &context, const cl::CommandQueue &queue
         film_bytes_ = std::max(film_bytes_, (band.end_row - band.first_row) * tiles.row_bytes());
         counter_bytes_ = std::max(counter_bytes_, tile_count(band) * sizeof(ItemCounters));
     }
-    sums_ = make_sums(context);
+    sums_.emplace(make_sums(context));
     begin(bands.front());
     unused_ = true;
 }
@@ -49,13 +49,13 @@ void DeviceFilm::copy(const Sums &from, const Sums &to) const {
 }
 
 void DeviceFilm::set_aside(const cl::Context &context) {
-    if (aside_.film() == nullptr)
-        aside_ = make_sums(context);
-    copy(sums_, aside_);
+    if (!aside_)
+        aside_.emplace(make_sums(context));
+    copy(*sums_, *aside_);
 }
 
 void DeviceFilm::restore() {
-    copy(aside_, sums_);
+    copy(*aside_, *sums_);
 }
 
 void DeviceFilm::begin(const Band &band) {
@@ -70,11 +70,11 @@ void DeviceFilm::begin(const Band &band) {
         kept_end_row_ > band.first_row ? (kept_end_row_ - band.first_row) * row : 0;
     with_device("clearing the film", [&] {
         if (kept > 0)
-            queue_.enqueueCopyBuffer(sums_.film, sums_.film,
+            queue_.enqueueCopyBuffer(sums_->film, sums_->film,
                                      (band.first_row - band_.first_row) * row, 0, kept);
-        queue_.enqueueFillBuffer(sums_.film, cl_uint{0}, kept,
+        queue_.enqueueFillBuffer(sums_->film, cl_uint{0}, kept,
                                  (band.end_row - band.first_row) * row - kept);
-        queue_.enqueueFillBuffer(sums_.counters, cl_uint{0}, 0,
+        queue_.enqueueFillBuffer(sums_->counters, cl_uint{0}, 0,
                                  tile_count(band) * sizeof(ItemCounters));
         queue_.finish();
     });
@@ -86,14 +86,14 @@ void DeviceFilm::forget() {
     kept_end_row_ = 0;
     if (control_bytes_ > 0)
         with_device("clearing the control tiles", [&] {
-            queue_.enqueueFillBuffer(sums_.control, cl_uint{0}, 0, control_bytes_);
+            queue_.enqueueFillBuffer(sums_->control, cl_uint{0}, 0, control_bytes_);
         });
 }
 
 cl_uint DeviceFilm::bind(cl::Kernel &kernel, cl_uint index) const {
-    kernel.setArg(index++, sums_.film);
-    kernel.setArg(index++, sums_.counters);
-    kernel.setArg(index++, sums_.control);
+    kernel.setArg(index++, sums_->film);
+    kernel.setArg(index++, sums_->counters);
+    kernel.setArg(index++, sums_->control);
     return index;
 }
 
@@ -115,17 +115,17 @@ void DeviceFilm::load(const Film &film, const std::vector<ControlPixel> &control
             std::vector<MeasuredPixel> measured(film.pixels.size());
             for (std::size_t i = 0; i < measured.size(); ++i)
                 measured[i] = {film.pixels[i], film.moments[i]};
-            write(sums_.film, measured);
+            write(sums_->film, measured);
         } else {
-            write(sums_.film, film.pixels);
+            write(sums_->film, film.pixels);
         }
-        write(sums_.control, control);
+        write(sums_->control, control);
     });
     kept_end_row_ = band_.end_row;
 }
 
 void DeviceFilm::read_all(bool aside, Film &film, std::vector<ControlPixel> &control) const {
-    const Sums &sums = aside ? aside_ : sums_;
+    const Sums &sums = aside ? *aside_ : *sums_;
     read_rows(sums, band_.first_row, band_.end_row - band_.first_row, film);
     control = read_control(sums);
 }
@@ -159,8 +159,8 @@ void DeviceFilm::read_rows(const Sums &sums, std::size_t first_row, std::size_t 
 std::vector<ItemCounters> DeviceFilm::read_counters() const {
     std::vector<ItemCounters> counters(tile_count(band_));
     with_device("reading the counters", [&] {
-        queue_.enqueueReadBuffer(sums_.counters, CL_TRUE, 0, counters.size() * sizeof(ItemCounters),
-                                 counters.data());
+        queue_.enqueueReadBuffer(sums_->counters, CL_TRUE, 0,
+                                 counters.size() * sizeof(ItemCounters), counters.data());
     });
     return counters;
 }

@@ -7,6 +7,7 @@
 #include "film/film.h"
 #include "shared/launch_data.h"
 
+#include <optional>
 #include <vector>
 
 namespace clrender {
@@ -48,7 +49,7 @@ public:
     /// The sums of `count` rows of pixels, counted over the whole picture, and their moments where
     /// the variance is wanted.
     void read_rows(std::size_t first_row, std::size_t count, Film &film) const {
-        read_rows(sums_, first_row, count, film);
+        read_rows(*sums_, first_row, count, film);
     }
     /// The same of all rows, where `aside` as set_aside() has kept them; and the control tiles.
     void read_all(bool aside, Film &film, std::vector<ControlPixel> &control) const;
@@ -56,7 +57,7 @@ public:
     [[nodiscard]] std::vector<ItemCounters> read_counters() const;
 
     /// Of all control tiles, in the order of control.h.
-    [[nodiscard]] std::vector<ControlPixel> read_control() const { return read_control(sums_); }
+    [[nodiscard]] std::vector<ControlPixel> read_control() const { return read_control(*sums_); }
 
     [[nodiscard]] std::size_t bytes() const {
         return film_bytes_ + counter_bytes_ + control_bytes_;
@@ -74,7 +75,7 @@ private:
     void read_rows(const Sums &sums, std::size_t first_row, std::size_t count, Film &film) const;
     [[nodiscard]] std::vector<ControlPixel> read_control(const Sums &sums) const;
 
-    Sums sums_, aside_;
+    std::optional<Sums> sums_, aside_;
     Band band_;
     std::size_t kept_end_row_ = 0; ///< end of the rows in the buffer whose sums go on
     bool unused_ = false;          ///< the first band has room and zeros already

@@ -1,8 +1,8 @@
 /// Emitter "sunsky".
 
 #include "../log.h"
-#include "limits.h"
 #include "mitsuba_scene.h"
+#include "scene/limits.h"
 #include "similarity.h"
 
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <iterator>
 #include <string>
 
 namespace clrender::gltf {
@@ -82,9 +82,12 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
         glm::dmat4 parent;
     };
     std::vector<Open> open;
-    const std::vector<int> roots = roots_of(document);
-    for (const int root : std::ranges::reverse_view(roots))
-        open.push_back({root, glm::dmat4(1.0)});
+    const auto open_all = [&open](const std::vector<int> &nodes, const glm::dmat4 &parent) {
+        std::transform(nodes.rbegin(), nodes.rend(), std::back_inserter(open), [&](int node) {
+            return Open{node, parent};
+        });
+    };
+    open_all(roots_of(document), glm::dmat4(1.0));
     std::vector<PlacedNode> placed;
     std::vector<bool> seen(document.model.nodes.size(), false);
     while (!open.empty()) {
@@ -99,8 +102,7 @@ std::vector<PlacedNode> placed_nodes(const Document &document) {
         const PlacedNode here{&node, at.node, at.parent * own_matrix(document, node, place)};
         if (!is_finite(here.to_world))
             throw document.error(place, "its place is not finite, expected numbers up to 1e+30");
-        for (const int child : std::ranges::reverse_view(node.children))
-            open.push_back({child, here.to_world});
+        open_all(node.children, here.to_world);
         placed.push_back(here);
     }
     if (document.has_animations)

@@ -2,6 +2,7 @@
 
 #include "mitsuba_scene.h"
 
+#include <algorithm>
 #include <fmt/core.h>
 
 namespace clrender::mitsuba {
@@ -24,8 +25,9 @@ void SceneReader::number_object(int object, std::size_t first_shape, std::size_t
 }
 
 void SceneReader::number_meshes() {
-    for (auto mesh = meshes_.rbegin(); mesh != meshes_.rend(); ++mesh)
-        scene_.shapes[mesh->shape].object = name_object(mesh->object);
+    std::for_each(meshes_.rbegin(), meshes_.rend(), [this](const auto &mesh) {
+        scene_.shapes[mesh.shape].object = name_object(mesh.object);
+    });
 }
 
 int SceneReader::name_object(int object) {
