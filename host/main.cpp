@@ -209,10 +209,6 @@ void add_checkpoints(const cli::Options &options, const Scene &scene,
     if (sampled_border(scene.film) > 0)
         throw InputError({options.scene, 0},
                          "the film has a sample_border, expected none beside --checkpoint");
-    if (takes_several_renders(scene))
-        throw InputError({options.scene, 0},
-                         "the scene's aov or moment has pictures that are rendered for themselves, "
-                         "expected one picture beside --checkpoint");
     if (checkpoint.parts > 1 && whole_blocks(scene.sample_count) != scene.sample_count)
         throw InputError({options.scene, 0},
                          fmt::format("{} samples cannot be dealt to parts, expected 16, 32 or a "

@@ -54,10 +54,6 @@ RenderOptions options_of_inner(const RenderOptions &options, std::size_t left) {
 
 } // namespace
 
-bool takes_several_renders(const Scene &scene) {
-    return scene.layers.pictures.size() > (first_is_picture(scene) ? 1 : 0);
-}
-
 RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &options) {
     if (scene.layers.pictures.empty())
         return render_scene(std::move(scene), options);

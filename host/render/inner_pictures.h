@@ -5,9 +5,6 @@
 
 namespace clrender {
 
-/// Whether inner pictures are rendered for themselves, beside the picture.
-bool takes_several_renders(const Scene &scene);
-
 /// Renders the scene, and its inner pictures as layers before all others: each in R, G, B and A, or
 /// for `moment` its mean in X, Y and Z.
 RenderResult render_with_inner_pictures(Scene &&scene, const RenderOptions &options);

@@ -127,7 +127,7 @@ TEST_CASE("Layers are written whatever ends a render, and go on with it") {
     CHECK_THAT(without.err, Catch::Contains("the layers of --aov are left out"));
 }
 
-TEST_CASE("Pictures inside of aov share the time, and exclude checkpoints") {
+TEST_CASE("Pictures inside of aov share the time") {
     const Runs runs;
     std::string scene = scene_with("10");
     const std::string path = R"(<integrator type="path">)";
@@ -142,10 +142,6 @@ TEST_CASE("Pictures inside of aov share the time, and exclude checkpoints") {
     // A picture that took all the time would leave the next one a single sample.
     const std::string spp = "\"spp\": ";
     CHECK(std::stoi(stats.substr(stats.find(spp) + spp.size())) > 16);
-
-    const ProgramResult both = runs.run({"two.xml", "-o", "t.exr", "--checkpoint", "c.exr"});
-    CHECK(both.exit_code == 2);
-    CHECK_THAT(both.err, Catch::Contains("two.xml: the scene's aov or moment has pictures"));
 }
 
 TEST_CASE("A render that is killed at any time goes on to the same bits") {
