@@ -1,9 +1,9 @@
 #include "checkpoint_options.h"
 
+#include "option_values.h"
 #include "output_file.h"
 #include "stop_options.h"
 
-#include <charconv>
 #include <filesystem>
 #include <fmt/core.h>
 
@@ -26,16 +26,22 @@ struct Part {
 /// "2/3".
 std::optional<Part> parse_part(const std::string &text) {
     constexpr int most_parts = 1 << 20;
-    Part part;
-    const char *end = text.data() + text.size();
-    const auto first = std::from_chars(text.data(), end, part.part);
-    if (first.ec != std::errc() || first.ptr == end || *first.ptr != '/')
+    const std::size_t slash = text.find('/');
+    if (slash == std::string::npos)
         return std::nullopt;
-    const auto second = std::from_chars(first.ptr + 1, end, part.parts);
-    if (second.ec != std::errc() || second.ptr != end || part.part < 1 || part.part > part.parts ||
-        part.parts > most_parts)
+    const auto part = parse_number<int>(text.substr(0, slash));
+    const auto parts = parse_number<int>(text.substr(slash + 1));
+    if (!part || !parts || *part < 1 || *part > *parts || *parts > most_parts)
         return std::nullopt;
-    return part;
+    return Part{*part, *parts};
+}
+
+/// A subcommand that takes files which others have written, with the options of a render.
+CLI::App *add_command(CLI::App &app, const std::string &name, const std::string &description) {
+    CLI::App *command = app.add_subcommand(name, description);
+    command->footer("");
+    command->fallthrough();
+    return command;
 }
 
 } // namespace
@@ -52,13 +58,7 @@ void add_checkpoint_options(CLI::App &app, CheckpointOptions &options) {
            [&](const std::string &text) { options.interval = parse_duration(text); },
            "Between two checkpoints (default: a minute, or 100 times what one takes)")
         ->type_name("T")
-        ->check(CLI::Validator(
-            [](const std::string &text) {
-                return parse_duration(text)
-                           ? std::string()
-                           : fmt::format("'{}' is not a time such as 90s or 5m", text);
-            },
-            ""))
+        ->check(parsed_by(parse_duration, "is not a time such as 90s or 5m"))
         ->group(group);
     app.add_option_function<std::string>(
            "--part",
@@ -70,21 +70,15 @@ void add_checkpoint_options(CLI::App &app, CheckpointOptions &options) {
            "Renders the Kth of N shares of the samples, for `clrender merge`\n"
            "(into --checkpoint; default: SCENE's name with .partKofN.exr)")
         ->type_name("K/N")
-        ->check(CLI::Validator(
-            [](const std::string &text) {
-                return parse_part(text) ? std::string()
-                                        : fmt::format("'{}' is not a part such as 2/3", text);
-            },
-            ""))
+        ->check(parsed_by(parse_part, "is not a part such as 2/3"))
         ->group(group);
 }
 
 CLI::App *add_resume(CLI::App &app, CheckpointOptions &options) {
-    CLI::App *command = app.add_subcommand(
-        "resume", "Goes on with a render from its checkpoint, to the same bits as without a\n"
-                  "break; -s, --time and --target-error set another end, -o other pictures");
-    command->footer("");
-    command->fallthrough();
+    CLI::App *command =
+        add_command(app, "resume",
+                    "Goes on with a render from its checkpoint, to the same bits as without a\n"
+                    "break; -s, --time and --target-error set another end, -o other pictures");
     command->add_option("FILE", options.resumed, "What --checkpoint has written")
         ->required()
         ->type_name("FILE.exr");
@@ -92,11 +86,10 @@ CLI::App *add_resume(CLI::App &app, CheckpointOptions &options) {
 }
 
 CLI::App *add_merge(CLI::App &app, CheckpointOptions &options) {
-    CLI::App *command = app.add_subcommand(
-        "merge", "Adds up the files of --part to the picture of a single render, to the bit;\n"
-                 "-o names it, and an .exr file is a checkpoint as well");
-    command->footer("");
-    command->fallthrough();
+    CLI::App *command =
+        add_command(app, "merge",
+                    "Adds up the files of --part to the picture of a single render, to the bit;\n"
+                    "-o names it, and an .exr file is a checkpoint as well");
     command->add_option("FILES", options.merged, "What --part has written, in any order")
         ->required()
         ->type_name("FILE.exr");

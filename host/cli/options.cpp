@@ -1,6 +1,7 @@
 #include "cli/options.h"
 
 #include "cli/option_conflicts.h"
+#include "cli/option_values.h"
 #include "image/image.h"
 #include "log.h"
 #include "output_file.h"
@@ -10,17 +11,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fmt/core.h>
 #include <limits>
-#include <map>
 #include <optional>
-#include <set>
-#include <unistd.h>
 
 namespace clrender::cli {
 
@@ -46,76 +41,6 @@ constexpr const char *examples =
     "memory, 70 a fault of clrender itself, 130 and 143 interrupted by SIGINT and SIGTERM (the\n"
     "picture so far is written).\n";
 
-/// Reads all of `text` as a number; nothing where there is anything else in it.
-template <class Number> std::optional<Number> parse_number(const std::string &text) {
-    Number value{};
-    const char *end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || stop != end)
-        return std::nullopt;
-    return value;
-}
-
-/// A check for CLI11: a whole number from `low` to `high`.
-CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
-    return {[=](std::string &text) {
-                const auto value = parse_number<std::int64_t>(text);
-                if (value && *value >= low && *value <= high)
-                    return std::string();
-                return fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
-            },
-            ""};
-}
-
-/// A check for CLI11: a finite number from `low` to `high`.
-CLI::Validator number(double low, double high) {
-    return {[=](std::string &text) {
-                const auto value = parse_number<double>(text);
-                if (value && std::isfinite(*value) && *value >= low && *value <= high)
-                    return std::string();
-                return fmt::format("'{}' is not a number from {} to {}", text, low, high);
-            },
-            ""};
-}
-
-/// A check for CLI11: one of `words`.
-CLI::Validator one_of(const std::vector<std::string> &words) {
-    return {[=](std::string &text) {
-                if (std::find(words.begin(), words.end(), text) != words.end())
-                    return std::string();
-                return fmt::format("'{}' is not {}", text, CLI::detail::join(words, ", "));
-            },
-            ""};
-}
-
-/// A check for CLI11: the word auto, or what another check accepts.
-CLI::Validator auto_or(const CLI::Validator &other) {
-    return {[other](std::string &text) {
-                std::string fault = text == "auto" ? "" : other(text);
-                return fault.empty() ? fault : fault + ", or auto";
-            },
-            ""};
-}
-
-/// Bytes, or with K, M, G or T behind the number times 1024, 1024^2 and so on, as in 512M, 1.5GiB.
-std::optional<std::uint64_t> parse_size(const std::string &text) {
-    constexpr std::string_view units = "KMGT";
-    const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
-    const auto value = parse_number<double>(text.substr(0, end));
-    std::string unit = text.substr(end);
-    std::size_t power = 0;
-    if (!unit.empty() && units.find(unit[0]) != std::string_view::npos)
-        power = units.find(unit[0]) + 1;
-    const std::string behind = unit.substr(power > 0 ? 1 : 0);
-    if (!value || !(behind.empty() || behind == "B" || (power > 0 && behind == "iB")))
-        return std::nullopt;
-    const double bytes = std::ldexp(*value, 10 * static_cast<int>(power));
-    constexpr double most = 9e18;
-    if (!(bytes >= 1 && bytes <= most))
-        return std::nullopt;
-    return static_cast<std::uint64_t>(bytes);
-}
-
 /// The layers that --aov knows.
 const std::vector<std::string> &known_layers() {
     static const std::vector<std::string> names = {
@@ -129,15 +54,6 @@ std::string check_layer(const std::string &text) {
     if (std::find(known.begin(), known.end(), text) != known.end())
         return {};
     return fmt::format("'{}' is no layer, expected {}", text, CLI::detail::join(known, ", "));
-}
-
-std::string check_memory_size(const std::string &text) {
-    return parse_size(text) ? "" : fmt::format("'{}' is not a size such as 512M or 4G", text);
-}
-
-/// A check for CLI11: some text.
-CLI::Validator not_empty() {
-    return {[](std::string &text) { return text.empty() ? "is empty" : ""; }, ""};
 }
 
 std::optional<Resolution> parse_resolution(const std::string &text) {
@@ -365,7 +281,7 @@ void add_run_options(CLI::App &app, Options &options, RawOptions &raw) {
                    "Refuses scenes that need more, on host and device together, such as 4G\n"
                    "(default: what the machine has)")
         ->type_name("SIZE")
-        ->check(CLI::Validator(check_memory_size, ""))
+        ->check(parsed_by(parse_size, "is not a size such as 512M or 4G"))
         ->group(group);
     app.add_option("--kernel-dir", options.kernel_dir,
                    "Kernel sources instead of the built-in ones")

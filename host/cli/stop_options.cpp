@@ -1,8 +1,9 @@
 #include "stop_options.h"
 
+#include "option_values.h"
+
 #include <charconv>
 #include <cmath>
-#include <fmt/core.h>
 #include <string_view>
 
 namespace clrender::cli {
@@ -60,26 +61,14 @@ void add_stop_options(CLI::App &app, StopOptions &options) {
            "--time", [&](const std::string &text) { options.seconds = parse_duration(text); },
            "Until the picture is written: 90s, 5m, 2h, 1h30m")
         ->type_name("T")
-        ->check(CLI::Validator(
-            [](const std::string &text) {
-                return parse_duration(text)
-                           ? std::string()
-                           : fmt::format("'{}' is not a time such as 90s, 5m or 1h30m", text);
-            },
-            ""))
+        ->check(parsed_by(parse_duration, "is not a time such as 90s, 5m or 1h30m"))
         ->group(group);
     app.add_option_function<std::string>(
            "--target-error", [&](const std::string &text) { options.error = parse_share(text); },
            "Relative error of the picture, such as 1% or 0.01: the square root of\n"
            "the mean of variance / (value^2 + .01) over pixels and colours")
         ->type_name("E")
-        ->check(CLI::Validator(
-            [](const std::string &text) {
-                return parse_share(text)
-                           ? std::string()
-                           : fmt::format("'{}' is not an error such as 1% or 0.01", text);
-            },
-            ""))
+        ->check(parsed_by(parse_share, "is not an error such as 1% or 0.01"))
         ->group(group);
 }
 
