@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <new>
 
 namespace clrender {
 
@@ -116,6 +117,21 @@ void AtomicFile::fail() {
 void write_output_file(const std::string &path, std::string_view bytes) {
     AtomicFile file(path);
     file.write(bytes);
+    file.commit();
+}
+
+void write_encoded_file(const std::string &path, const std::function<void(AtomicFile &)> &encode) {
+    AtomicFile file(path);
+    try {
+        encode(file);
+    } catch (const OutputError &) {
+        throw;
+    } catch (const std::bad_alloc &) {
+        throw;
+    } catch (const std::exception &error) {
+        file.check();
+        throw OutputError(path, std::string("cannot be encoded (") + error.what() + ")");
+    }
     file.commit();
 }
 

@@ -2,6 +2,7 @@
 /// Files that the program leaves behind. A failure leaves an older file as it was.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -42,6 +43,10 @@ private:
 
 /// Writes `bytes` to an AtomicFile and commits it.
 void write_output_file(const std::string &path, std::string_view bytes);
+
+/// Lets `encode` write to an AtomicFile, and commits it. What a library throws becomes an
+/// OutputError; where the file had failed, the file's.
+void write_encoded_file(const std::string &path, const std::function<void(AtomicFile &)> &encode);
 
 /// Why `path` cannot be written, or "". Finds out by making a temporary file in its folder, which
 /// is removed again.

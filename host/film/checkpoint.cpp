@@ -188,31 +188,22 @@ bool FilmLayout::operator==(const FilmLayout &other) const {
 
 void write_checkpoint(const std::string &path, const Checkpoint &checkpoint, const Image &picture,
                       const std::map<std::string, std::string> &metadata) {
-    AtomicFile file(path);
-    try {
-        const auto add_sums = [&](Imf::Header &header, Imf::FrameBuffer &buffer) {
-            header.insert(state_name, Imf::StringAttribute(state_of(checkpoint).dump()));
-            header.insert(options_name, Imf::StringAttribute(checkpoint.options));
-            if (!checkpoint.control.empty())
-                header.insert(control_name, Imf::StringAttribute(bytes_of(checkpoint.control)));
-            // The library does not write to what it writes from.
-            auto &film = const_cast<Film &>(checkpoint.film);
-            for_each_sum(film, [&](const std::string &name, char *first, std::size_t stride) {
-                header.channels().insert(name, Imf::Channel(Imf::UINT));
-                buffer.insert(name, sums_slice(film, first, stride));
-            });
-        };
-        // The lower words are noise: what packs them better takes many times the time.
+    const auto add_sums = [&](Imf::Header &header, Imf::FrameBuffer &buffer) {
+        header.insert(state_name, Imf::StringAttribute(state_of(checkpoint).dump()));
+        header.insert(options_name, Imf::StringAttribute(checkpoint.options));
+        if (!checkpoint.control.empty())
+            header.insert(control_name, Imf::StringAttribute(bytes_of(checkpoint.control)));
+        // The library does not write to what it writes from.
+        auto &film = const_cast<Film &>(checkpoint.film);
+        for_each_sum(film, [&](const std::string &name, char *first, std::size_t stride) {
+            header.channels().insert(name, Imf::Channel(Imf::UINT));
+            buffer.insert(name, sums_slice(film, first, stride));
+        });
+    };
+    // The lower words are noise: what packs them better takes many times the time.
+    write_encoded_file(path, [&](AtomicFile &file) {
         image_format::encode_exr(picture, metadata, {}, true, file, add_sums);
-    } catch (const OutputError &) {
-        throw;
-    } catch (const std::bad_alloc &) {
-        throw;
-    } catch (const std::exception &error) {
-        file.check();
-        throw OutputError(path, std::string("cannot be encoded (") + error.what() + ")");
-    }
-    file.commit();
+    });
 }
 
 Checkpoint read_checkpoint(const std::string &path) {

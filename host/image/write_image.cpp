@@ -169,18 +169,9 @@ void write_image(const std::string &path, const Image &image, double exposure,
     if (image.color_space == ColorSpace::xyz && (extension == ".hdr" || extension == ".pfm"))
         log::warn({path, 0}, "the XYZ of the film is written as linear sRGB, as only .exr can say "
                              "that it holds XYZ");
-    AtomicFile file(path);
-    try {
+    write_encoded_file(path, [&](AtomicFile &file) {
         encode(extension, image, exposure, metadata, extra_layers, fast, file);
-    } catch (const OutputError &) {
-        throw;
-    } catch (const std::bad_alloc &) {
-        throw;
-    } catch (const std::exception &error) {
-        file.check();
-        throw OutputError(path, std::string("cannot be encoded (") + error.what() + ")");
-    }
-    file.commit();
+    });
 }
 
 void try_write_image(const std::string &path, const Image &image, double exposure) {
