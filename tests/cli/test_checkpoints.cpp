@@ -3,6 +3,7 @@
 #include "image/image.h"
 #include "image/layers.h"
 #include "program.h"
+#include "small_scene.h"
 
 #include <catch2/catch.hpp>
 
@@ -15,27 +16,9 @@ using namespace clrender::test;
 
 namespace {
 
-/// A lit floor with a ball: samples that neighbouring tiles share, three blocks and more.
+/// Samples that neighbouring tiles share, three blocks and more.
 std::string scene_with(const std::string &power) {
-    return R"(<scene version="3.0.0">
-    <integrator type="path"><integer name="max_depth" value="4"/></integrator>
-    <sensor type="perspective">
-        <float name="fov" value="60"/>
-        <transform name="to_world"><lookat origin="0,3,-3" target="0,0,0" up="0,1,0"/></transform>
-        <film type="hdrfilm">
-            <integer name="width" value="20"/><integer name="height" value="18"/>
-        </film>
-        <sampler type="independent"><integer name="sample_count" value="64"/></sampler>
-    </sensor>
-    <shape type="rectangle">
-        <transform name="to_world"><rotate x="1" angle="-90"/><scale value="5"/></transform>
-    </shape>
-    <emitter type="point">
-        <point name="position" x="0" y="2" z="0"/><rgb name="intensity" value=")" +
-           power + R"("/>
-    </emitter>
-</scene>
-)";
+    return scene_of({.width = 20, .height = 18, .samples = 64, .power = power, .defaults = ""});
 }
 
 const std::vector<std::string> quiet = {"-q", "--lanes", "4"};

@@ -1,6 +1,7 @@
 /// The command line as a contract: exit codes, what is printed and what is written.
 
 #include "program.h"
+#include "small_scene.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -11,26 +12,8 @@ using namespace clrender::test;
 
 namespace {
 
-/// A lit floor, quick on any device.
-const char *const small_scene = R"(<scene version="3.0.0">
-    <default name="power" value="10"/>
-    <integrator type="path"><integer name="max_depth" value="4"/></integrator>
-    <sensor type="perspective">
-        <float name="fov" value="60"/>
-        <transform name="to_world"><lookat origin="0,3,-3" target="0,0,0" up="0,1,0"/></transform>
-        <film type="hdrfilm">
-            <integer name="width" value="16"/><integer name="height" value="12"/>
-        </film>
-        <sampler type="independent"><integer name="sample_count" value="4"/></sampler>
-    </sensor>
-    <shape type="rectangle">
-        <transform name="to_world"><rotate x="1" angle="-90"/><scale value="5"/></transform>
-    </shape>
-    <emitter type="point">
-        <point name="position" x="0" y="2" z="0"/><rgb name="intensity" value="$power"/>
-    </emitter>
-</scene>
-)";
+const std::string small_scene =
+    scene_of({.power = "$power", .defaults = "    <default name=\"power\" value=\"10\"/>\n"});
 
 } // namespace
 

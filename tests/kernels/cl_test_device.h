@@ -41,6 +41,22 @@ public:
     /// Runs `kernel` over at least `items` work-items, in groups of `local`, and waits.
     void run(const cl::Kernel &kernel, std::size_t items, std::size_t local = 64) const;
 
+    /// What a kernel (records, results, number of records), `lanes` of them an item, makes of `in`:
+    /// `out_size` numbers for each `in_size`.
+    template <class Real>
+    std::vector<Real> run_records(cl::Kernel &kernel, int lanes, const std::vector<Real> &in,
+                                  std::size_t in_size, std::size_t out_size) const {
+        const std::size_t count = in.size() / in_size;
+        const cl::Buffer records = upload<Real>(in);
+        const cl::Buffer results = allocate(count * out_size * sizeof(Real));
+        kernel.setArg(0, records);
+        kernel.setArg(1, results);
+        kernel.setArg(2, static_cast<cl_uint>(count));
+        const auto width = static_cast<std::size_t>(lanes);
+        run(kernel, (count + width - 1) / width);
+        return download<Real>(results, count * out_size);
+    }
+
     [[nodiscard]] std::string name() const;
 
     /// Floats of a vector register.

@@ -20,16 +20,9 @@ std::vector<double> run_in_double(const ClTestDevice &device, const std::vector<
                                   std::size_t in_size, std::size_t out_size) {
     KernelConfig config = selftest::probe_config(1, CLR_FILTER_SAMPLED);
     config.DOUBLE_PRECISION = 1;
-    const std::size_t count = in.size() / in_size;
     cl::Kernel kernel(device.build("probes/selftest_probes.cl", config.build_options()),
                       "probe_math");
-    const cl::Buffer records = device.upload<double>(in);
-    const cl::Buffer out = device.allocate(out_size * count * sizeof(double));
-    kernel.setArg(0, records);
-    kernel.setArg(1, out);
-    kernel.setArg(2, static_cast<cl_uint>(count));
-    device.run(kernel, count, 1);
-    return device.download<double>(out, out_size * count);
+    return device.run_records(kernel, 1, in, in_size, out_size);
 }
 
 double size_of(long double difference) {

@@ -47,14 +47,7 @@ template <class Real> std::vector<Real> run(int lanes, const std::vector<Real> &
     config.DOUBLE_PRECISION = sizeof(Real) == sizeof(double) ? 1 : 0;
     cl::Kernel kernel(device->build("probes/math_probes.cl", config.build_options()),
                       "probe_functions");
-    const cl::Buffer arguments = device->upload<Real>(in);
-    const cl::Buffer results = device->allocate(in.size() * sizeof(Real));
-    kernel.setArg(0, arguments);
-    kernel.setArg(1, results);
-    kernel.setArg(2, static_cast<cl_uint>(in.size() / size));
-    const auto width = static_cast<std::size_t>(lanes);
-    device->run(kernel, (in.size() / size + width - 1) / width);
-    return device->download<Real>(results, in.size());
+    return device->run_records(kernel, lanes, in, size, size);
 }
 
 double relative(long double found, long double exact) {

@@ -37,15 +37,7 @@ cl::Kernel kernel_for(const ClTestDevice &device, int lanes, bool is_double) {
 template <class Real> std::vector<Real> run(int lanes, const std::vector<Real> &in) {
     static const ClTestDevice *const device = new ClTestDevice;
     cl::Kernel kernel = kernel_for(*device, lanes, sizeof(Real) == sizeof(double));
-    const std::size_t count = in.size() / in_size;
-    const cl::Buffer arguments = device->upload<Real>(in);
-    const cl::Buffer results = device->allocate(count * out_size * sizeof(Real));
-    kernel.setArg(0, arguments);
-    kernel.setArg(1, results);
-    kernel.setArg(2, static_cast<cl_uint>(count));
-    const auto width = static_cast<std::size_t>(lanes);
-    device->run(kernel, (count + width - 1) / width);
-    return device->download<Real>(results, count * out_size);
+    return device->run_records(kernel, lanes, in, in_size, out_size);
 }
 
 /// A record's numbers as the oracle takes them.

@@ -88,15 +88,7 @@ template <class Real> std::vector<Real> run(int lanes, const std::vector<double>
     cl::Kernel kernel(device->build("probes/sphere_chain_probes.cl", config.build_options()),
                       "probe_sphere_chain");
     const std::vector<Real> records(in.begin(), in.end());
-    const std::size_t count = in.size() / in_size;
-    const cl::Buffer arguments = device->upload<Real>(records);
-    const cl::Buffer results = device->allocate(count * out_size * sizeof(Real));
-    kernel.setArg(0, arguments);
-    kernel.setArg(1, results);
-    kernel.setArg(2, static_cast<cl_uint>(count));
-    const auto width = static_cast<std::size_t>(lanes);
-    device->run(kernel, (count + width - 1) / width);
-    return device->download<Real>(results, count * out_size);
+    return device->run_records(kernel, lanes, records, in_size, out_size);
 }
 
 /// Points at 1.01 to 30 radii from the centre, indices from 1.1 to 2.5; the place of y follows from
