@@ -1,37 +1,11 @@
 /// Texture "scale" of Mitsuba 0.6: another one, multiplied by a number or a colour.
 
-#include "../image/texels.h"
-#include "../memory_limit.h"
 #include "mitsuba_scene.h"
 #include "mitsuba_text.h"
 
 #include <utility>
 
 namespace clrender::mitsuba {
-
-namespace {
-
-/// The picture's linear colours, multiplied.
-Image multiplied(const Image &image, TexelFormat format, const Rgb &factor,
-                 const SourceLocation &where) {
-    Image result;
-    result.width = image.width;
-    result.height = image.height;
-    result.channels = 3;
-    const std::size_t count =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    if (const std::string why = claim_memory(count * 3 * sizeof(float)); !why.empty())
-        throw InputError(where, "the scaled texture " + why);
-    result.f32.reserve(count * 3);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Rgb colour = texel_color(image, i, format) * factor;
-        for (int c = 0; c < 3; ++c)
-            result.f32.push_back(static_cast<float>(colour[c]));
-    }
-    return result;
-}
-
-} // namespace
 
 int SceneReader::read_scaled_texture(Properties &properties, SpectrumUse use) {
     const Rgb factor = read_constant(properties, "scale", SpectrumUse::refractive_index, Rgb(1));
@@ -66,13 +40,7 @@ int SceneReader::read_scaled_texture(Properties &properties, SpectrumUse use) {
         texture.scale *= factor.r;
         break;
     case TextureKind::bitmap:
-        if (!load_images_)
-            break;
-        auto image = std::make_shared<Image>();
-        files_.then(
-            [image, source = texture.bitmap, format = texture.format, factor,
-             where = properties.where()] { *image = multiplied(*source, format, factor, where); });
-        texture.bitmap = std::move(image);
+        texture.scale *= factor;
         break;
     }
     scene_.textures.push_back(std::move(texture));
